@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "ramcdb/chart.h"
+#include "ramcdb/geometry.h"
+
+namespace ramcdb::chartify {
+
+/// A triangle mesh on the lattice, as it is: open, non-manifold, with degenerate and duplicate faces, isolated
+/// vertices. Faces index positions.
+struct IndexedMesh {
+  std::vector<LatticePoint> positions;
+  std::vector<Triangle> faces;
+};
+
+/// A mesh in canonical order, and where its parts came from.
+struct CanonicalMesh {
+  IndexedMesh mesh;
+  std::vector<std::uint32_t> source_vertex;  ///< canonical -> input
+  std::vector<std::uint32_t> source_face;    ///< canonical -> input
+};
+
+/// Puts faces along a Hilbert curve and turns each to its smallest corner first, vertices in the order of their first
+/// face, isolated ones last. The result depends on the geometry only, not on the order or rotation of the input's faces
+/// nor on its vertex order (ties between faces with equal positions are broken by their neighbours' positions, and only
+/// then by input order).
+[[nodiscard]] CanonicalMesh canonical_order(const IndexedMesh& mesh);
+
+enum class Method {
+  refined,  ///< growth, Lloyd, rebalancing, face moves and wire straightening (the default)
+  paper,    ///< Lloyd with cost (1)-(3) and the repairs of section 4.3 of the paper, for comparison
+};
+
+struct Options {
+  std::uint32_t target_faces = 5000;
+  Method method = Method::refined;
+  unsigned threads = 1;                                  ///< changes the time, never the result
+  std::function<void(double done)> progress = nullptr;   ///< 0..1; may throw to cancel
+};
+
+/// Cuts a mesh into charts. REQUIRES: canonical order. Returns for every face the chart it belongs to, and for every
+/// isolated vertex likewise. Chart numbers are 0 .. chart_count - 1 along the Hilbert curve, none is empty.
+struct Charts {
+  std::uint32_t chart_count = 0;
+  std::vector<std::uint32_t> chart_of_face;
+  std::vector<std::uint32_t> chart_of_isolated_vertex;  ///< in the order of the mesh's isolated vertices
+};
+[[nodiscard]] Charts chartify(const IndexedMesh& mesh, const Options& options);
+
+}  // namespace ramcdb::chartify

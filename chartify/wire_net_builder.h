@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "chartify/chartify.h"
+#include "ramcdb/chart.h"
+
+namespace ramcdb::chartify {
+
+/// A wire as the path of mesh vertices from its begin corner to its end corner, both included. Indices of charts,
+/// wires and corners are positions in WireNet, counted from 0.
+struct NetWire {
+  std::vector<std::uint32_t> vertices;
+  std::uint32_t begin_corner = 0, end_corner = 0;
+  std::vector<std::uint32_t> charts;  ///< ascending, a chart once per pass
+};
+
+struct NetLoopStep {
+  std::uint32_t wire = 0;
+  bool reversed = false;
+};
+
+struct NetChart {
+  std::vector<std::vector<NetLoopStep>> loops;
+  Chart chart;
+  std::vector<std::uint32_t> mesh_vertex;  ///< local vertex of `chart` -> mesh vertex; border vertices may repeat one
+};
+
+/// The wire-net of a chartified mesh (paper, section 3): every chart with its loops, every wire once, every corner.
+///
+/// An edge is cut, and lies on a wire, unless exactly two faces of the same chart pass it in opposite directions.
+/// A vertex whose faces do not form one fan is one corner, however many fans there are; a closed fan at such a vertex
+/// is slit open along two edges, and a loop of two vertices is lengthened by one edge, so that all its local copies are
+/// known through wires. A corner ends wires: any vertex where other than two cut edges meet or the charts change. A
+/// closed wire without a corner gets one at its smallest position.
+struct WireNet {
+  std::vector<std::uint32_t> corners;  ///< mesh vertex of each corner
+  std::vector<NetWire> wires;          ///< in the order in which charts' loops first pass them, and so directed
+  std::vector<NetChart> charts;
+};
+
+[[nodiscard]] WireNet build_wire_net(const IndexedMesh& mesh, const Charts& charts);
+
+}  // namespace ramcdb::chartify
