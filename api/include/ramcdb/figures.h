@@ -1,0 +1,154 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ramcdb/geometry.h"
+#include "ramcdb/ids.h"
+
+/// What operations report: plain values, printed by the command line and checked by tests.
+namespace ramcdb {
+
+/// Bytes of all blobs of one mesh at one version, checksums included, keys not counted.
+struct MeshBytes {
+  std::uint64_t wire_net = 0;      ///< index pages
+  std::uint64_t wires = 0;         ///< wire blobs
+  std::uint64_t connectivity = 0;  ///< the charts' share that says how vertices connect
+  std::uint64_t geometry = 0;      ///< the charts' share that says where inner vertices are
+  std::uint64_t chart_headers = 0;
+  std::uint64_t attributes = 0;
+  std::uint64_t tables = 0;   ///< coder tables and the mesh record
+  std::uint64_t payload = 0;  ///< the sum of the above
+  std::uint64_t store = 0;    ///< what the LMDB and SQLite files of the whole repository occupy on disk
+
+  friend bool operator==(const MeshBytes&, const MeshBytes&) = default;
+};
+
+struct MeshInfo {
+  std::string mesh;
+  VersionId revision;
+  std::uint64_t vertices = 0, faces = 0, charts = 0, wires = 0, corners = 0;
+  std::uint64_t components = 0, boundary_loops = 0, nonmanifold_edges = 0;
+  std::uint64_t isolated_vertices = 0, degenerate_faces = 0, duplicate_faces = 0, nonmanifold_vertices = 0,
+                inconsistent_edges = 0;
+  Lattice lattice;
+  bool lossless = false;
+  double max_error = 0;  ///< the one loss, on entry: step / 2 per axis, model units
+  std::string profile;
+  std::uint32_t target_faces = 0;
+  Point lo, hi;  ///< exact bounding box, model units
+  MeshBytes bytes;
+  struct Spread {
+    std::uint32_t min = 0, median = 0, p95 = 0, max = 0;
+  } chart_faces;
+};
+
+struct MeshSummary {
+  std::string name;
+  MeshId id;
+  std::uint64_t vertices = 0, faces = 0, charts = 0;
+  std::uint64_t payload = 0;  ///< bytes
+};
+
+struct ChartSummary {
+  ChartId id;
+  std::uint32_t faces = 0, inner_vertices = 0, border_vertices = 0;
+  Point lo, hi;  ///< exact bounding box, model units
+  std::uint64_t bytes = 0;
+  std::vector<ChartId> neighbours;  ///< charts that share a wire, ascending
+  VersionId version;                ///< that last changed it
+};
+
+struct VersionRecord {
+  VersionId id;
+  std::vector<VersionId> parents;
+  std::string branch, author, message;
+  std::int64_t time_us = 0;  ///< UTC, microseconds since 1970
+  std::string operation;     ///< "import", "commit"
+  struct MeshChange {
+    std::string mesh;
+    std::vector<ChartId> charts;  ///< charts that the version wrote, ascending
+  };
+  std::vector<MeshChange> changes;
+  std::uint64_t charts_touched = 0, vertices_moved = 0, vertices_added = 0, vertices_removed = 0;
+  double max_displacement = 0;  ///< model units
+  std::uint64_t bytes_written = 0;
+};
+
+/// What an import found and did. `info` is as `Snapshot::info` after it.
+struct ImportReport {
+  MeshInfo info;
+  struct Dropped {
+    std::string what;
+    std::uint64_t count = 0;
+  };
+  std::vector<Dropped> dropped;             ///< named and counted: what the file holds and the repository does not
+  std::uint64_t polygons_triangulated = 0;  ///< faces with more than three corners
+  std::uint64_t vertices_welded = 0;        ///< corners of a triangle soup that were joined on equal positions
+  double measured_error = 0;                ///< largest distance along an axis between file and lattice, model units
+  double seconds = 0;
+};
+
+struct CheckoutReport {
+  VersionId revision;
+  std::uint64_t charts = 0, faces = 0, vertices = 0;
+  std::uint64_t bytes_read = 0, blobs_read = 0, pages_read = 0;
+  double seconds = 0;
+};
+
+/// What an edited region would change, or did.
+struct ChangeReport {
+  VersionId base, tip;
+  std::vector<ChartId> charts_touched;  ///< with a moved vertex, border included, inside the region
+  std::uint64_t vertices_moved = 0, vertices_added = 0, vertices_removed = 0;
+  std::uint64_t border_vertices_moved = 0;            ///< of them, on the region's own border
+  double max_displacement = 0, rms_displacement = 0;  ///< model units; rms over moved vertices
+  struct ChartChange {
+    ChartId chart;
+    std::uint64_t vertices_moved = 0;
+    double max_displacement = 0;
+  };
+  std::vector<ChartChange> per_chart;
+  std::vector<ChartId> changed_by_others;  ///< charts of the region that newer versions changed
+  std::vector<ChartId> conflicts;          ///< of these, the ones that this edit touches too
+  [[nodiscard]] bool clean() const { return vertices_moved + vertices_added + vertices_removed == 0; }
+};
+
+struct CommitReport {
+  VersionId revision;  ///< the new version; the base when nothing changed
+  VersionId parent;
+  bool nothing_changed = false;
+  std::uint64_t charts_touched = 0;  ///< with a moved vertex inside the region
+  std::uint64_t charts_reencoded = 0, charts_added = 0, charts_removed = 0, wires_reencoded = 0, ranges_expanded = 0;
+  std::uint64_t vertices_moved = 0, vertices_added = 0, vertices_removed = 0;
+  double max_displacement = 0;  ///< model units
+  std::uint64_t bytes_written = 0;
+  double seconds = 0;
+  std::vector<ChartId> conflicts;  ///< not empty: refused, nothing was written
+};
+
+struct VerifyReport {
+  std::uint64_t objects = 0;  ///< blobs looked at
+  std::uint64_t decoded_charts = 0;
+  struct Problem {
+    std::string kind, mesh, object;
+    VersionId revision;
+    std::string text;
+  };
+  std::vector<Problem> problems;
+  [[nodiscard]] bool ok() const { return problems.empty(); }
+};
+
+/// How two versions of a mesh differ, chart by chart.
+struct DiffReport {
+  VersionId from, to;
+  std::vector<ChartId> changed, added, removed;  ///< charts
+  std::uint64_t vertices_moved = 0;
+  double max_displacement = 0, rms_displacement = 0;  ///< model units; rms over moved vertices
+  std::vector<ChangeReport::ChartChange> per_chart;
+};
+
+}  // namespace ramcdb

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ramcdb/error.h"
+#include "ramcdb/figures.h"
+#include "ramcdb/snapshot.h"
+
+namespace ramcdb {
+
+class EditTransaction;
+
+/// Called now and then with the stage and the share of it that is done (0..1), from the calling thread. It may throw
+/// to cancel: the repository stays as it was.
+using Progress = std::function<void(std::string_view stage, double done)>;
+
+struct ImportOptions {
+  std::string name;      ///< of the mesh; the file's stem when empty
+  unsigned bits = 16;    ///< step = largest extent / (2^bits - 1); 1..30
+  double precision = 0;  ///< not 0: largest coordinate error in model units instead of `bits` (step = 2 * this)
+  std::optional<Lattice> lattice;  ///< instead of both: this very lattice
+  std::uint32_t chart_faces = 5000;
+  bool paper_chartify = false;  ///< the paper's own Lloyd, for comparison
+  std::string message;          ///< "import FILE" when empty
+  std::string author;
+  std::string branch = "main";
+  unsigned threads = 1;  ///< changes the time, never the bytes
+  Progress progress;
+};
+
+enum class Paint { none, chart, bits, version };
+
+struct FileOptions {
+  Paint paint = Paint::none;  ///< colour the faces (PLY, OFF); such a file is to look at and cannot be committed
+  bool ascii = false;         ///< PLY as text
+  bool overwrite = true;
+  unsigned threads = 1;
+  Progress progress;
+};
+
+struct CommitOptions {
+  std::string message;
+  std::string author;
+  std::string branch = "main";
+  unsigned threads = 1;
+  Progress progress;
+};
+
+/// A repository of meshes with their history: a folder. Cheap to copy; copies are the same repository. Thread-safe.
+class Repository {
+ public:
+  class Impl;
+
+  /// Makes an empty one. `folder` must not exist or be an empty folder.
+  static void create(const std::filesystem::path& folder);
+  /// Throws not_found, unsupported_version, corrupt, storage.
+  static Repository open(const std::filesystem::path& folder);
+
+  [[nodiscard]] std::filesystem::path folder() const;
+  [[nodiscard]] std::string id() const;
+
+  /// Revisions are `17`, `v17`, a branch, a tag, `HEAD`, each with `~N` behind it; empty is HEAD.
+  [[nodiscard]] VersionId resolve(std::string_view revision) const;
+  [[nodiscard]] std::vector<MeshSummary> meshes(std::string_view revision = {}) const;
+  /// `mesh` may be empty where the version holds just one.
+  [[nodiscard]] Snapshot snapshot(std::string_view mesh = {}, std::string_view revision = {}) const;
+  /// Newest first, at most `limit`, those that changed `mesh` when it is not empty.
+  [[nodiscard]] std::vector<VersionRecord> log(std::string_view revision = {}, std::size_t limit = ~std::size_t{0},
+                                               std::string_view mesh = {}) const;
+  [[nodiscard]] VersionRecord show(std::string_view revision) const;
+
+  /// Adds the mesh of a file as one version. Throws invalid_argument for a file that cannot be taken whole.
+  ImportReport import(const std::filesystem::path& file, const ImportOptions& options);
+
+  /// Writes a whole mesh; the format follows from the extension.
+  CheckoutReport export_mesh(const Snapshot& snapshot, const std::filesystem::path& file,
+                             const FileOptions& options) const;
+
+  /// Writes a region as an ordinary mesh file and its sidecar `FILE.ramcdb.json` beside it, from which commit_file and
+  /// status_file know where it came from.
+  CheckoutReport checkout_file(const Snapshot& snapshot, const std::vector<ChartId>& charts,
+                               const std::filesystem::path& file, const FileOptions& options) const;
+
+  /// What a checked-out file would change. Throws invalid_argument when its connectivity is not the region's any more.
+  [[nodiscard]] ChangeReport status_file(const std::filesystem::path& file) const;
+  /// Commits it. Conflicts come back in the report, with nothing written. Updates the sidecar to the new version.
+  CommitReport commit_file(const std::filesystem::path& file, const CommitOptions& options);
+
+  /// Starts an edit of one mesh on the tip of a branch.
+  [[nodiscard]] EditTransaction begin_edit(std::string_view mesh = {}, std::string_view branch = "main");
+
+  [[nodiscard]] DiffReport diff(const Snapshot& from, const Snapshot& to, unsigned threads = 1) const;
+
+  struct VerifyOptions {
+    bool quick = false;  ///< checksums and references only, no decoding
+    unsigned threads = 1;
+    Progress progress;
+  };
+  [[nodiscard]] VerifyReport verify(const VerifyOptions& options) const;
+
+  [[nodiscard]] Impl& impl() const { return *impl_; }
+
+ private:
+  explicit Repository(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
+  std::shared_ptr<Impl> impl_;
+};
+
+/// The repository that a checked-out file came from, opened. Throws not_found when the sidecar or the repository is
+/// missing, invalid_argument when the sidecar belongs to another repository.
+[[nodiscard]] Repository open_for_file(const std::filesystem::path& file);
+
+}  // namespace ramcdb
