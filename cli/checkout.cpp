@@ -1,0 +1,69 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "cli/failure.h"
+#include "cli/json_out.h"
+#include "cli/options.h"
+#include "cli/output.h"
+#include "cli/output_file_options.h"
+#include "cli/progress_bar.h"
+#include "cli/region_options.h"
+#include "cli/text.h"
+#include "cli/verbs.h"
+#include "ramcdb/repository.h"
+
+namespace ramcdb::cli {
+namespace {
+
+struct CheckoutOptions {
+  std::string folder;
+  MeshAt which;
+  RegionOptions region;
+  OutputFileOptions output;
+  unsigned threads = 1;
+  OutputMode mode;
+};
+
+std::string report_text(const CheckoutReport& report, const std::string& file) {
+  return file + ": " + counted(report.charts, "chart") + " of " + version_text(report.revision) + ", " +
+         counted(report.vertices, "vertex", "vertices") + ", " + counted(report.faces, "face") + "; read " +
+         counted(report.blobs_read, "blob") + ", " + counted(report.bytes_read, "byte") + " in " +
+         duration(report.seconds) + "\n";
+}
+
+CheckoutReport checkout(const CheckoutOptions& options, const Region& region) {
+  const Repository repository = Repository::open(options.folder);
+  const Snapshot snapshot = repository.snapshot(options.which.mesh, options.which.at);
+  FileOptions file = file_options_of(options.output);
+  file.threads = options.threads;
+  ProgressBar bar("checkout", options.mode.quiet);
+  file.progress = bar.callback();
+  return repository.checkout_file(snapshot, snapshot.find(region), options.output.file, file);
+}
+
+int run_checkout(const CheckoutOptions& options) {
+  const CheckoutReport report = checkout(options, region_of(options.region, "checkout"));
+  if (options.mode.json)
+    say(checkout_json(report));
+  else if (!options.mode.quiet)
+    say(report_text(report, options.output.file));
+  return kDone;
+}
+
+}  // namespace
+
+void setup_checkout(CLI::App& app, Run& run) {
+  const auto options = std::make_shared<CheckoutOptions>();
+  CLI::App& verb = *app.add_subcommand("checkout", "Write a region as an ordinary mesh file, for editing and commit");
+  add_repository(verb, options->folder);
+  add_region(verb, options->region);
+  add_output_file(verb, options->output);
+  add_mesh(verb, options->which);
+  add_at(verb, options->which);
+  add_threads(verb, options->threads);
+  add_output_mode(verb, options->mode);
+  add_example(verb, "ramcdb checkout statues.ramcdb --near 0.1,0.5,0 --grow 1 -o horn.ply");
+  verb.callback([options, &run] { run = [options] { return run_checkout(*options); }; });
+}
+
+}  // namespace ramcdb::cli

@@ -1,0 +1,72 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "cli/chart_list.h"
+#include "cli/failure.h"
+#include "cli/json_out.h"
+#include "cli/options.h"
+#include "cli/output.h"
+#include "cli/progress_bar.h"
+#include "cli/text.h"
+#include "cli/verbs.h"
+#include "ramcdb/repository.h"
+
+namespace ramcdb::cli {
+namespace {
+
+struct CommitCommand {
+  std::string file;
+  CommitOptions options;
+  OutputMode mode;
+};
+
+std::string report_text(const CommitReport& report) {
+  if (report.nothing_changed) return "nothing changed: no version written\n";
+  return version_text(report.revision) + " after " + version_text(report.parent) + ": " +
+         counted(report.vertices_moved, "vertex", "vertices") + " moved in " + counted(report.charts_touched, "chart") +
+         ", by at most " + model_units(report.max_displacement) + " (model units)\nre-encoded " +
+         counted(report.charts_reencoded, "chart") + " and " + counted(report.wires_reencoded, "wire") + ", wrote " +
+         counted(report.bytes_written, "byte") + " in " + duration(report.seconds) + "\n";
+}
+
+CommitReport commit(const CommitCommand& command) {
+  Repository repository = open_for_file(command.file);
+  ProgressBar bar("commit", command.mode.quiet);
+  CommitOptions options = command.options;
+  options.progress = bar.callback();
+  return repository.commit_file(command.file, options);
+}
+
+int refuse(const CommitReport& report, const std::string& file) {
+  complain("others changed " + std::string(report.conflicts.size() == 1 ? "chart " : "charts ") +
+           chart_list(report.conflicts) + " since, nothing was written (" + file +
+           "): check the region out again to another file and repeat the edit there");
+  return kConflict;
+}
+
+int run_commit(const CommitCommand& command) {
+  const CommitReport report = commit(command);
+  const bool conflict = !report.conflicts.empty();
+  if (command.mode.json)
+    say(commit_json(report));
+  else if (!command.mode.quiet && !conflict)
+    say(report_text(report));
+  return conflict ? refuse(report, command.file) : kDone;
+}
+
+}  // namespace
+
+void setup_commit(CLI::App& app, Run& run) {
+  const auto command = std::make_shared<CommitCommand>();
+  CLI::App& verb = *app.add_subcommand("commit", "Publish an edited file as a new version");
+  add_checked_out_file(verb, command->file);
+  add_message(verb, command->options.message, true);
+  add_author(verb, command->options.author);
+  verb.add_option("--branch", command->options.branch, "The branch to commit to (default: main)")->type_name("NAME");
+  add_threads(verb, command->options.threads);
+  add_output_mode(verb, command->mode);
+  add_example(verb, "ramcdb commit horn.ply -m \"straighten the left horn\"");
+  verb.callback([command, &run] { run = [command] { return run_commit(*command); }; });
+}
+
+}  // namespace ramcdb::cli

@@ -1,0 +1,156 @@
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "cli/failure.h"
+#include "cli/json_out.h"
+#include "cli/options.h"
+#include "cli/output.h"
+#include "cli/progress_bar.h"
+#include "cli/text.h"
+#include "cli/verbs.h"
+#include "ramcdb/repository.h"
+
+namespace ramcdb::cli {
+namespace {
+
+struct ImportCommand {
+  std::string folder, file;
+  std::string lattice_of;  ///< a mesh of the repository, or empty
+  std::string chartify = "refined";
+  std::string profile = "dense";
+  ImportOptions options;
+  OutputMode mode;
+};
+
+std::string refuse_bad_precision(const std::string& text) {
+  double value = 0;
+  const bool number = CLI::detail::lexical_cast(text, value);
+  return number && std::isfinite(value) && value > 0 ? "" : "'" + text + "' is not a length above 0";
+}
+
+std::string found_text(const MeshInfo& info) {
+  return "found    " + counted(info.components, "component") + ", " + counted(info.boundary_loops, "boundary loop") +
+         ", " + counted(info.nonmanifold_edges, "non-manifold edge") + ", " +
+         counted(info.nonmanifold_vertices, "non-manifold vertex", "non-manifold vertices") + ",\n         " +
+         counted(info.inconsistent_edges, "inconsistently oriented edge") + ", " +
+         counted(info.degenerate_faces, "degenerate face") + ", " + counted(info.duplicate_faces, "duplicate face") +
+         ", " + counted(info.isolated_vertices, "isolated vertex", "isolated vertices") + " (all kept)\n";
+}
+
+std::string changed_text(const ImportReport& report) {
+  std::string text;
+  if (report.polygons_triangulated > 0)
+    text += "changed  " + counted(report.polygons_triangulated, "polygon") + " cut into triangles\n";
+  if (report.vertices_welded > 0)
+    text += "changed  " + counted(report.vertices_welded, "corner") + " at equal positions joined\n";
+  for (const auto& dropped : report.dropped)
+    text += "dropped  " + one_line(dropped.what) + " (" + grouped(dropped.count) + ")\n";
+  return text;
+}
+
+std::string error_text(const ImportReport& report) {
+  if (report.info.lossless) return "error    none, positions are kept to the last bit\n";
+  return "error    at most " + model_units(report.info.max_error) + " along each axis, in model units; measured " +
+         model_units(report.measured_error) + " (lattice step " + model_units(report.info.lattice.step) + ")\n";
+}
+
+std::string size_text(const MeshInfo& info) {
+  const MeshBytes& bytes = info.bytes;
+  const auto bits = [&](std::uint64_t n) { return fixed(bits_per_vertex(n, info.vertices), 3); };
+  std::string text = "size     " + grouped(bytes.payload) + " bytes, " + bits(bytes.payload) +
+                     " bits/vertex: connectivity " + bits(bytes.connectivity) + ", geometry " + bits(bytes.geometry) +
+                     ", wires " + bits(bytes.wires) + ",\n         wire net " + bits(bytes.wire_net) +
+                     ", chart headers " + bits(bytes.chart_headers) + ", tables " + bits(bytes.tables);
+  if (bytes.attributes > 0) text += ", attributes " + bits(bytes.attributes);
+  return text + "\n";
+}
+
+std::string time_text(const ImportReport& report) {
+  std::string text = "time     " + duration(report.seconds);
+  if (report.seconds > 0)
+    text += ", " + grouped(static_cast<std::uint64_t>(static_cast<double>(report.info.faces) / report.seconds)) +
+            " faces/s";
+  return text + "\n";
+}
+
+std::string report_text(const ImportReport& report) {
+  const MeshInfo& info = report.info;
+  return one_line(info.mesh) + ": " + counted(info.vertices, "vertex", "vertices") + ", " +
+         counted(info.faces, "face") + " in " + counted(info.charts, "chart") + ", now version " +
+         version_text(info.revision) + "\n" + found_text(info) + changed_text(report) + error_text(report) +
+         size_text(info) + time_text(report);
+}
+
+double size_of(const std::filesystem::path& file) {
+  std::error_code ignored;  // the library says better what is wrong with a file than its size could
+  const std::uintmax_t size = std::filesystem::file_size(file, ignored);
+  return ignored ? 0 : static_cast<double>(size);
+}
+
+int run_import(const ImportCommand& command) {
+  Repository repository = Repository::open(command.folder);
+  ImportOptions options = command.options;
+  if (!command.lattice_of.empty()) options.lattice = repository.snapshot(command.lattice_of).lattice();
+  options.paper_chartify = command.chartify == "paper";
+
+  ImportReport report;
+  {
+    ProgressBar bar("import", command.mode.quiet, size_of(command.file));
+    options.progress = bar.callback();
+    report = repository.import(command.file, options);
+  }
+  if (command.mode.json)
+    say(import_json(report));
+  else if (!command.mode.quiet)
+    say(report_text(report));
+  return kDone;
+}
+
+void add_lattice_options(CLI::App& verb, ImportCommand& command) {
+  CLI::Option* bits = verb.add_option("--bits", command.options.bits,
+                                      "Lattice step = largest extent / (2^N - 1), as Draco's -qp (default: 16)");
+  bits->type_name("N")->check(CLI::Range(1U, 30U));
+  CLI::Option* precision =
+      verb.add_option("--precision", command.options.precision, "Instead: largest coordinate error, in model units");
+  precision->type_name("X")->check(CLI::Validator(refuse_bad_precision, ""))->excludes(bits);
+  verb.add_option("--lattice-of", command.lattice_of,
+                  "Instead: the lattice of this mesh of the repository, so that both fit together exactly")
+      ->type_name("MESH")
+      ->excludes(bits)
+      ->excludes(precision);
+}
+
+void add_chart_options(CLI::App& verb, ImportCommand& command) {
+  verb.add_option("--chart-faces", command.options.chart_faces, "Faces per chart to aim at (default: 5000)")
+      ->type_name("N")
+      ->check(CLI::Range(1U, 1U << 30));
+  verb.add_option("--chartify", command.chartify, "How charts are cut; `paper` is for comparison (default: refined)")
+      ->type_name("refined|paper")
+      ->check(CLI::Validator(CLI::IsMember({"refined", "paper"})).description(""));
+  verb.add_option("--profile", command.profile, "How charts are coded (default: dense)")
+      ->type_name("dense")
+      ->check(CLI::Validator(CLI::IsMember({"dense"})).description(""));
+}
+
+}  // namespace
+
+void setup_import(CLI::App& app, Run& run) {
+  const auto command = std::make_shared<ImportCommand>();
+  CLI::App& verb = *app.add_subcommand("import", "Add a mesh file to a repository as one version");
+  add_repository(verb, command->folder);
+  verb.add_option("FILE", command->file, "A mesh file: its extension says the format")->required();
+  verb.add_option("--name", command->options.name, "Name of the mesh (default: the file's name without its extension)")
+      ->type_name("NAME");
+  add_lattice_options(verb, *command);
+  add_chart_options(verb, *command);
+  add_message(verb, command->options.message, false);
+  add_author(verb, command->options.author);
+  add_threads(verb, command->options.threads);
+  add_output_mode(verb, command->mode);
+  add_example(verb, "ramcdb import statues.ramcdb dragon.ply --precision 0.001 -m \"the scan of May\"");
+  verb.callback([command, &run] { run = [command] { return run_import(*command); }; });
+}
+
+}  // namespace ramcdb::cli

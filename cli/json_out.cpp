@@ -1,0 +1,246 @@
+#include "cli/json_out.h"
+
+#include <nlohmann/json.hpp>
+
+#include "cli/text.h"
+
+namespace ramcdb::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;  // keys in the order in which they are written here
+
+std::string printed(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n'; }
+
+Json of(const Point& p) { return Json::array({p.x, p.y, p.z}); }
+
+template <class Tag>
+Json of(const std::vector<Id<Tag>>& ids) {
+  Json json = Json::array();
+  for (const auto id : ids) json.push_back(id.value);
+  return json;
+}
+
+/// The kinds of bytes, each passed through `figure`.
+template <class Figure>
+Json by_kind(const MeshBytes& bytes, Figure figure) {
+  return {{"wire_net", figure(bytes.wire_net)},
+          {"wires", figure(bytes.wires)},
+          {"connectivity", figure(bytes.connectivity)},
+          {"geometry", figure(bytes.geometry)},
+          {"chart_headers", figure(bytes.chart_headers)},
+          {"attributes", figure(bytes.attributes)},
+          {"tables", figure(bytes.tables)},
+          {"payload", figure(bytes.payload)},
+          {"store", figure(bytes.store)}};
+}
+
+Json of(const Lattice& lattice, bool lossless) {
+  return {{"step", lattice.step}, {"origin", of(lattice.origin)}, {"lossless", lossless}};
+}
+
+Json of(const MeshInfo& info) {
+  return {{"mesh", info.mesh},
+          {"revision", info.revision.value},
+          {"vertices", info.vertices},
+          {"faces", info.faces},
+          {"charts", info.charts},
+          {"wires", info.wires},
+          {"corners", info.corners},
+          {"components", info.components},
+          {"boundary_loops", info.boundary_loops},
+          {"nonmanifold_edges", info.nonmanifold_edges},
+          {"lattice", of(info.lattice, info.lossless)},
+          {"max_error", info.max_error},
+          {"profile", info.profile},
+          {"bytes", by_kind(info.bytes, [](std::uint64_t bytes) { return bytes; })},
+          {"bits_per_vertex",
+           by_kind(info.bytes, [&](std::uint64_t bytes) { return bits_per_vertex(bytes, info.vertices); })},
+          {"chart_faces",
+           {{"min", info.chart_faces.min},
+            {"median", info.chart_faces.median},
+            {"p95", info.chart_faces.p95},
+            {"max", info.chart_faces.max}}},
+          {"nonmanifold_vertices", info.nonmanifold_vertices},
+          {"isolated_vertices", info.isolated_vertices},
+          {"degenerate_faces", info.degenerate_faces},
+          {"duplicate_faces", info.duplicate_faces},
+          {"inconsistent_edges", info.inconsistent_edges},
+          {"target_faces", info.target_faces},
+          {"box", {{"lo", of(info.lo)}, {"hi", of(info.hi)}}}};
+}
+
+Json of(const ChartSummary& chart) {
+  return {{"id", chart.id.value},
+          {"faces", chart.faces},
+          {"vertices", chart.inner_vertices + chart.border_vertices},
+          {"inner_vertices", chart.inner_vertices},
+          {"border_vertices", chart.border_vertices},
+          {"box", {{"lo", of(chart.lo)}, {"hi", of(chart.hi)}}},
+          {"bytes", chart.bytes},
+          {"neighbours", of(chart.neighbours)},
+          {"version", chart.version.value}};
+}
+
+Json of(const ChangeReport& report) {
+  return {{"base", report.base.value},
+          {"tip", report.tip.value},
+          {"charts_touched", report.charts_touched.size()},
+          {"vertices_moved", report.vertices_moved},
+          {"vertices_added", report.vertices_added},
+          {"vertices_removed", report.vertices_removed},
+          {"max_displacement", report.max_displacement},
+          {"conflicts", of(report.conflicts)},
+          {"clean", report.clean()},
+          {"charts", of(report.charts_touched)},
+          {"border_vertices_moved", report.border_vertices_moved},
+          {"rms_displacement", report.rms_displacement},
+          {"changed_by_others", of(report.changed_by_others)}};
+}
+
+Json of(const std::vector<ChangeReport::ChartChange>& changes) {
+  Json json = Json::array();
+  for (const auto& change : changes)
+    json.push_back({{"chart", change.chart.value},
+                    {"vertices_moved", change.vertices_moved},
+                    {"max_displacement", change.max_displacement}});
+  return json;
+}
+
+Json mesh_names(const VersionRecord& version) {
+  Json json = Json::array();
+  for (const auto& change : version.changes) json.push_back(change.mesh);
+  return json;
+}
+
+Json of(const VersionRecord& version) {
+  return {{"id", version.id.value},        {"parents", of(version.parents)},          {"branch", version.branch},
+          {"author", version.author},      {"time", iso_time(version.time_us, true)}, {"message", version.message},
+          {"meshes", mesh_names(version)}, {"charts_touched", version.charts_touched}};
+}
+
+Json of(const VerifyReport::Problem& problem) {
+  return {{"kind", problem.kind},
+          {"mesh", problem.mesh},
+          {"object", problem.object},
+          {"revision", problem.revision.value},
+          {"text", problem.text}};
+}
+
+}  // namespace
+
+std::string init_json(const std::filesystem::path& folder, const std::string& id) {
+  return printed({{"repository", folder.string()}, {"id", id}});
+}
+
+std::string import_json(const ImportReport& report) {
+  Json json = of(report.info);
+  json["dropped"] = Json::array();
+  for (const auto& dropped : report.dropped)
+    json["dropped"].push_back({{"what", dropped.what}, {"count", dropped.count}});
+  json["polygons_triangulated"] = report.polygons_triangulated;
+  json["vertices_welded"] = report.vertices_welded;
+  json["measured_error"] = report.measured_error;
+  json["seconds"] = report.seconds;
+  return printed(json);
+}
+
+std::string info_json(const MeshInfo& info) { return printed(of(info)); }
+
+std::string meshes_json(const std::vector<MeshSummary>& meshes, VersionId revision) {
+  Json json = {{"revision", revision.value}, {"meshes", Json::array()}};
+  for (const MeshSummary& mesh : meshes)
+    json["meshes"].push_back({{"name", mesh.name},
+                              {"id", mesh.id.value},
+                              {"vertices", mesh.vertices},
+                              {"faces", mesh.faces},
+                              {"charts", mesh.charts},
+                              {"payload", mesh.payload}});
+  return printed(json);
+}
+
+std::string charts_json(const std::vector<ChartSummary>& charts, VersionId revision) {
+  Json json = {{"revision", revision.value}, {"charts", Json::array()}};
+  for (const ChartSummary& chart : charts) json["charts"].push_back(of(chart));
+  return printed(json);
+}
+
+std::string checkout_json(const CheckoutReport& report) {
+  return printed({{"revision", report.revision.value},
+                  {"charts", report.charts},
+                  {"faces", report.faces},
+                  {"vertices", report.vertices},
+                  {"bytes_read", report.bytes_read},
+                  {"blobs_read", report.blobs_read},
+                  {"seconds", report.seconds},
+                  {"pages_read", report.pages_read}});
+}
+
+std::string status_json(const ChangeReport& report) { return printed(of(report)); }
+
+std::string diff_json(const ChangeReport& report) {
+  Json json = of(report);
+  json["per_chart"] = of(report.per_chart);
+  return printed(json);
+}
+
+std::string diff_json(const DiffReport& report) {
+  return printed({{"from", report.from.value},
+                  {"to", report.to.value},
+                  {"changed", of(report.changed)},
+                  {"added", of(report.added)},
+                  {"removed", of(report.removed)},
+                  {"vertices_moved", report.vertices_moved},
+                  {"max_displacement", report.max_displacement},
+                  {"rms_displacement", report.rms_displacement},
+                  {"per_chart", of(report.per_chart)}});
+}
+
+std::string commit_json(const CommitReport& report) {
+  return printed({{"revision", report.revision.value},
+                  {"parent", report.parent.value},
+                  {"charts_touched", report.charts_touched},
+                  {"charts_reencoded", report.charts_reencoded},
+                  {"charts_added", report.charts_added},
+                  {"charts_removed", report.charts_removed},
+                  {"wires_reencoded", report.wires_reencoded},
+                  {"ranges_expanded", report.ranges_expanded},
+                  {"vertices_moved", report.vertices_moved},
+                  {"vertices_added", report.vertices_added},
+                  {"vertices_removed", report.vertices_removed},
+                  {"max_displacement", report.max_displacement},
+                  {"bytes_written", report.bytes_written},
+                  {"seconds", report.seconds},
+                  {"nothing_changed", report.nothing_changed},
+                  {"conflicts", of(report.conflicts)}});
+}
+
+std::string log_json(const std::vector<VersionRecord>& versions) {
+  Json json = {{"revisions", Json::array()}};
+  for (const VersionRecord& version : versions) json["revisions"].push_back(of(version));
+  return printed(json);
+}
+
+std::string show_json(const VersionRecord& version) {
+  Json json = of(version);
+  json["operation"] = version.operation;
+  json["changes"] = Json::array();
+  for (const auto& change : version.changes)
+    json["changes"].push_back({{"mesh", change.mesh}, {"charts", of(change.charts)}});
+  json["vertices_moved"] = version.vertices_moved;
+  json["vertices_added"] = version.vertices_added;
+  json["vertices_removed"] = version.vertices_removed;
+  json["max_displacement"] = version.max_displacement;
+  json["bytes_written"] = version.bytes_written;
+  return printed(json);
+}
+
+std::string verify_json(const VerifyReport& report) {
+  Json json = {{"ok", report.ok()},
+               {"objects", report.objects},
+               {"decoded_charts", report.decoded_charts},
+               {"problems", Json::array()}};
+  for (const auto& problem : report.problems) json["problems"].push_back(of(problem));
+  return printed(json);
+}
+
+}  // namespace ramcdb::cli

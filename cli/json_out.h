@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ramcdb/figures.h"
+
+/// What `--json` prints, one function per kind of report. Scripts rely on the keys: add some, never rename one. Every
+/// function returns one JSON object and a line end. Text that is not UTF-8 gets replacement characters.
+namespace ramcdb::cli {
+
+[[nodiscard]] std::string init_json(const std::filesystem::path& folder, const std::string& id);
+[[nodiscard]] std::string import_json(const ImportReport& report);
+[[nodiscard]] std::string info_json(const MeshInfo& info);
+[[nodiscard]] std::string meshes_json(const std::vector<MeshSummary>& meshes, VersionId revision);
+[[nodiscard]] std::string charts_json(const std::vector<ChartSummary>& charts, VersionId revision);
+/// Of checkout and of export.
+[[nodiscard]] std::string checkout_json(const CheckoutReport& report);
+[[nodiscard]] std::string status_json(const ChangeReport& report);
+/// Of `diff FILE`: the status and a row per chart.
+[[nodiscard]] std::string diff_json(const ChangeReport& report);
+/// Of `diff REPO REV1 REV2`.
+[[nodiscard]] std::string diff_json(const DiffReport& report);
+[[nodiscard]] std::string commit_json(const CommitReport& report);
+[[nodiscard]] std::string log_json(const std::vector<VersionRecord>& versions);
+[[nodiscard]] std::string show_json(const VersionRecord& version);
+[[nodiscard]] std::string verify_json(const VerifyReport& report);
+
+}  // namespace ramcdb::cli

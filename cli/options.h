@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+
+#include "ramcdb/repository.h"
+
+namespace CLI {
+class App;
+}
+
+/// Options that several verbs share, so that they read and mean the same everywhere.
+namespace ramcdb::cli {
+
+/// How a verb speaks.
+struct OutputMode {
+  bool json = false;   ///< one JSON object on standard output, nothing else there
+  bool quiet = false;  ///< no progress, and no report of what was done
+};
+void add_output_mode(CLI::App& verb, OutputMode& mode);
+
+/// REPO, a positional.
+void add_repository(CLI::App& verb, std::string& folder);
+
+/// FILE, a positional: a checked-out file.
+void add_checked_out_file(CLI::App& verb, std::string& file);
+
+/// Which mesh at which version.
+struct MeshAt {
+  std::string mesh;  ///< empty: the only one
+  std::string at;    ///< empty: the tip of main
+};
+void add_mesh(CLI::App& verb, MeshAt& which);
+void add_at(CLI::App& verb, MeshAt& which);
+
+/// -j/--threads; sets `threads` to the number of cores first.
+void add_threads(CLI::App& verb, unsigned& threads);
+
+/// -m/--message, required and not empty, where `required`.
+void add_message(CLI::App& verb, std::string& message, bool required);
+
+/// --author; sets `author` to $RAMCDB_AUTHOR, else user@host, else "unknown" first.
+void add_author(CLI::App& verb, std::string& author);
+
+/// Adds the verb's example to its help: a command line as it can be pasted.
+void add_example(CLI::App& verb, const std::string& command);
+
+}  // namespace ramcdb::cli

@@ -1,0 +1,56 @@
+#include "cli/region_options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "cli/failure.h"
+#include "ramcdb/error.h"
+
+namespace ramcdb::cli {
+namespace {
+
+void add_shape(CLI::App& verb, const char* name, std::vector<std::string>& texts, const char* form, const char* help) {
+  verb.add_option(name, texts, help)
+      ->type_name(form)
+      ->expected(1)
+      ->take_all()
+      ->allow_extra_args(false)  // --box A --box B, never --box A B: B would swallow a positional
+      ->group("REGION (one or more, united; always whole charts)");
+}
+
+template <class Parse>
+void add_shapes(Region& region, const std::vector<std::string>& texts, Parse parse) {
+  for (const std::string& text : texts) region.shapes.emplace_back(parse(text));
+}
+
+}  // namespace
+
+void add_region(CLI::App& verb, RegionOptions& options) {
+  add_shape(verb, "--box", options.boxes, "X0,Y0,Z0,X1,Y1,Z1", "Charts whose bounding box meets the box");
+  add_shape(verb, "--sphere", options.spheres, "X,Y,Z,R", "Charts whose bounding box meets the ball");
+  add_shape(verb, "--charts", options.charts, "5,9-12", "These charts");
+  add_shape(verb, "--near", options.points, "X,Y,Z", "The chart closest to the point");
+  add_shape(verb, "--frustum", options.frusta, "M00,M01,...,M33",
+            "Charts that a camera sees: 16 numbers, its row-major clip matrix");
+  const char* group = "REGION (one or more, united; always whole charts)";
+  verb.add_flag("--all", options.all, "The whole mesh")->group(group);
+  verb.add_option("--grow", options.grow, "Then add K rings of neighbour charts")->type_name("K")->group(group);
+}
+
+Region region_of(const RegionOptions& options, const std::string& verb) {
+  Region region;
+  try {
+    add_shapes(region, options.boxes, parse_box);
+    add_shapes(region, options.spheres, parse_sphere);
+    add_shapes(region, options.charts, parse_charts);
+    add_shapes(region, options.points, parse_nearest);
+    add_shapes(region, options.frusta, parse_frustum);
+  } catch (const Error& e) {
+    throw UsageError(e.what());  // malformed text is wrong usage, whatever the library calls it
+  }
+  if (options.all) region.shapes.emplace_back(WholeMesh{});
+  if (region.shapes.empty()) throw UsageError(usage_text("no region given; for everything say --all", verb));
+  region.grow = options.grow;
+  return region;
+}
+
+}  // namespace ramcdb::cli

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ramcdb/region.h"
+
+namespace CLI {
+class App;
+}
+
+namespace ramcdb::cli {
+
+/// REGION as texts; every option may be repeated, and all of them are united.
+struct RegionOptions {
+  std::vector<std::string> boxes, spheres, charts, points, frusta;
+  bool all = false;
+  unsigned grow = 0;
+};
+
+void add_region(CLI::App& verb, RegionOptions& options);
+
+/// Throws UsageError when a text is malformed or no shape is given.
+[[nodiscard]] Region region_of(const RegionOptions& options, const std::string& verb);
+
+}  // namespace ramcdb::cli
