@@ -1,0 +1,41 @@
+# cmake -D BUILD=<build folder> -D SOURCE=<source root> -D WORK=<scratch folder> -P install_and_consume.cmake
+# Installs a build into a prefix, builds the README's API example against the installed package, and runs the example
+# and the installed program.
+cmake_minimum_required(VERSION 3.25)
+
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  message("${output}")
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "failed (${result}): ${ARGN}")
+  endif()
+endfunction()
+
+# The lines between two marker lines of a text, without the code fence.
+function(cut_out text marker result)
+  string(FIND "${text}" "<!-- ${marker} -->" begin)
+  string(FIND "${text}" "<!-- end of ${marker} -->" end)
+  if(begin EQUAL -1 OR end LESS begin)
+    message(FATAL_ERROR "README.md has no block between <!-- ${marker} --> and <!-- end of ${marker} -->")
+  endif()
+  math(EXPR length "${end} - ${begin}")
+  string(SUBSTRING "${text}" ${begin} ${length} block)
+  string(REGEX REPLACE "^[^`]*```[a-z]*\n" "" block "${block}")
+  string(REGEX REPLACE "```\n*$" "" block "${block}")
+  set(${result} "${block}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${WORK})
+file(MAKE_DIRECTORY ${WORK})
+file(READ ${SOURCE}/README.md readme)
+cut_out("${readme}" "api example" example)
+file(WRITE ${WORK}/example.cpp "${example}")
+file(WRITE ${WORK}/tetrahedron.obj "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
+
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
+run(${CMAKE_COMMAND} -G Ninja -S ${SOURCE}/tests/house/consumer -B ${WORK}/build -D EXAMPLE_SOURCE=${WORK}/example.cpp
+    -D CMAKE_PREFIX_PATH=${WORK}/prefix)
+run(${CMAKE_COMMAND} --build ${WORK}/build)
+run(${WORK}/build/example ${WORK}/tetrahedron.obj ${WORK}/example.ramcdb)
+run(${WORK}/prefix/bin/ramcdb verify ${WORK}/example.ramcdb)
+file(REMOVE_RECURSE ${WORK})
