@@ -1,0 +1,111 @@
+#include "api/chart_loader.h"
+
+#include <fmt/format.h>
+
+#include "api/parallel.h"
+#include "api/store_format.h"
+#include "codec/wire_codec.h"
+#include "ramcdb/error.h"
+
+namespace ramcdb::detail {
+namespace {
+
+/// Blobs read in one LMDB transaction before it is renewed.
+constexpr std::size_t kBatch = 256;
+
+std::string place(const Snapshot::Impl& at, const PageChart& chart) {
+  return fmt::format("chart {} of mesh {}, written by version {}", chart.id.value, at.root().name, chart.version.value);
+}
+
+}  // namespace
+
+struct ChartLoader::Job {
+  PageChart entry;
+  Buffer blob;
+};
+
+Border border_of(const std::vector<WireLoop>& loops, const std::function<const LoadedWire&(WireId)>& wire) {
+  Border border;
+  for (const WireLoop& loop : loops) {
+    const std::size_t loop_begin = border.points.size();
+    for (const DirectedWire step : loop) {
+      const LoadedWire& w = wire(step.wire);
+      const auto& points = w.wire.points;
+      const auto inner = static_cast<std::uint32_t>(points.size() - 2);
+      border.points.push_back(step.reversed ? points.back() : points.front());
+      const CornerId first = step.reversed ? w.entry.end : w.entry.begin;
+      border.keys.push_back({VertexKey::Where::corner, first.value, 0});
+      for (std::uint32_t i = 0; i < inner; ++i) {
+        const std::uint32_t index = step.reversed ? inner - 1 - i : i;
+        border.points.push_back(points[index + 1]);
+        border.keys.push_back({VertexKey::Where::wire, w.entry.id.value, index});
+      }
+    }
+    border.loop_sizes.push_back(static_cast<std::uint32_t>(border.points.size() - loop_begin));
+  }
+  return border;
+}
+
+void ChartLoader::read_wires(const LeafPage& leaf, const PageChart& chart, db::BlobReader& reader) {
+  for (const WireLoop& loop : chart.loops) {
+    for (const DirectedWire step : loop) {
+      if (wires_.contains(step.wire)) continue;
+      const PageWire& entry = *find_wire(leaf, step.wire);
+      const LatticePoint begin = find_corner(leaf, entry.begin)->position;
+      const LatticePoint end = find_corner(leaf, entry.end)->position;
+      LoadedWire loaded{entry, {{begin, end}}, 0};
+      if (entry.inner_points) {
+        const Buffer blob = reader.get({db::Kind::wire, at_.root().mesh, entry.id.value, entry.version, 0});
+        loaded.blob_bytes = blob.size() + kBlobOverhead;
+        loaded.wire = codec::decode_wire(blob, begin, end, entry.inner_points);
+      }
+      wires_.emplace(step.wire, std::move(loaded));
+    }
+  }
+}
+
+LoadedChart ChartLoader::decode(const Job& job) const {
+  Border border = border_of(job.entry.loops, [&](WireId id) -> const LoadedWire& { return wires_.at(id); });
+  codec::DecodedChart decoded;
+  try {
+    decoded = codec::decode_chart(job.blob, border.points, border.loop_sizes, at_.tables(job.entry.table),
+                                  at_.record().range);
+  } catch (const Error& e) {
+    throw Error(e.code(), fmt::format("{}: {}", place(at_, job.entry), e.what()), {}, "run `ramcdb verify`");
+  }
+  LoadedChart loaded{job.entry, std::move(decoded.chart), std::move(border.keys), decoded.cost,
+                     job.blob.size() + kBlobOverhead};
+  const std::size_t inner = loaded.chart.positions.size() - loaded.keys.size();
+  if (inner != job.entry.inner_vertices || loaded.chart.faces.size() != job.entry.faces)
+    throw Error(Errc::corrupt, "the chart's counts are not those of its index page", place(at_, job.entry),
+                "run `ramcdb verify`");
+  for (std::uint32_t i = 0; i < inner; ++i)
+    loaded.keys.push_back({VertexKey::Where::chart, job.entry.id.value, i});
+  return loaded;
+}
+
+std::vector<LoadedChart> ChartLoader::load(std::span<const ChartId> charts, unsigned threads, ReadCost* cost) {
+  const auto reader = at_.store().reader();
+  std::vector<Job> jobs;
+  jobs.reserve(charts.size());
+  for (const ChartId id : charts) {
+    const auto leaf = at_.pages().leaf_of(id, cost);
+    if (!leaf)
+      throw Error(Errc::not_found, fmt::format("there is no chart {}", id.value),
+                  fmt::format("mesh {}, version {}", at_.root().name, at_.version().value),
+                  "`ramcdb charts REPO --all` lists them");
+    if (jobs.size() % kBatch == kBatch - 1) reader->renew();
+    const PageChart& entry = *find_chart(*leaf->leaf, id);
+    read_wires(*leaf->leaf, entry, *reader);
+    jobs.push_back({entry, reader->get({db::Kind::chart, at_.root().mesh, id.value, entry.version, 0})});
+  }
+  if (cost) {
+    cost->blobs += reader->blobs_read();
+    cost->bytes += reader->bytes_read();
+  }
+  std::vector<LoadedChart> loaded(jobs.size());
+  parallel_for(jobs.size(), threads, [&](std::size_t i) { loaded[i] = decode(jobs[i]); });
+  return loaded;
+}
+
+}  // namespace ramcdb::detail

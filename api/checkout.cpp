@@ -1,0 +1,170 @@
+#include "api/checkout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+
+#include "api/commit.h"
+#include "api/region_file.h"
+#include "api/sidecar.h"
+#include "ramcdb/error.h"
+
+namespace ramcdb::detail {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+CheckoutReport report_for(const Snapshot& snapshot, const RegionMesh& region, const ReadCost& cost) {
+  CheckoutReport report;
+  report.revision = snapshot.version();
+  report.charts = region.charts.size();
+  report.faces = region.faces.size();
+  report.vertices = region.points.size();
+  report.bytes_read = cost.bytes;
+  report.blobs_read = cost.blobs;
+  report.pages_read = cost.pages;
+  return report;
+}
+
+/// A file may be replaced when nothing in it can be lost: it is as some checkout wrote it.
+bool is_untouched_checkout(const std::filesystem::path& file) {
+  try {
+    return read_sidecar(file).file_hash == hash_file(file);
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+void refuse_to_overwrite(const std::filesystem::path& file, const FileOptions& options) {
+  if (!options.overwrite && std::filesystem::exists(file) && !is_untouched_checkout(file))
+    throw Error(Errc::invalid_argument, "the file exists and is no unedited checkout", file.string(),
+                "choose another name, or --force to replace it");
+}
+
+/// A checked-out file as read back: the region it came from and what it moves.
+struct EditedFile {
+  Sidecar sidecar;
+  std::vector<std::unique_ptr<Snapshot::Impl>> snapshots;
+  std::vector<RegionPart> parts;
+  RegionMesh region;
+  std::vector<VertexMove> moves;
+  ChangeReport change;
+};
+
+const db::MeshRoot& root_named(const std::vector<db::MeshRoot>& roots, const std::string& name, VersionId version) {
+  const auto it = std::find_if(roots.begin(), roots.end(), [&](const db::MeshRoot& r) { return r.name == name; });
+  if (it == roots.end())
+    throw Error(Errc::not_found, fmt::format("version {} has no mesh '{}'", version.value, name));
+  return *it;
+}
+
+EditedFile read_edited_file(const std::shared_ptr<db::Store>& store, const std::filesystem::path& file) {
+  EditedFile edited;
+  edited.sidecar = read_sidecar(file);
+  if (edited.sidecar.repository_id != store->id())
+    throw Error(Errc::invalid_argument, "the file was checked out from another repository", file.string(),
+                "use the repository that its sidecar names, or check out again");
+  if (edited.sidecar.painted)
+    throw Error(Errc::invalid_argument, "the file was coloured to look at", file.string(),
+                "check out without --color to edit");
+  for (const Sidecar::Part& part : edited.sidecar.parts) {
+    const auto roots = store->roots(part.version);
+    edited.snapshots.push_back(
+        std::make_unique<Snapshot::Impl>(store, part.version, root_named(roots, edited.sidecar.mesh, part.version)));
+    edited.parts.push_back({edited.snapshots.back().get(), part.charts});
+  }
+  edited.region = load_region(edited.parts, 1);
+  mesh_file::MeshData data = mesh_file::read_mesh(file);
+  const Lattice& lattice = edited.parts.front().at->record().lattice;
+  const bool trust_ids = edited.parts.size() == 1 && edited.sidecar.ids_version == edited.parts.front().at->version();
+  try {
+    edited.moves = moves_in_file(edited.region, lattice, data, edited.sidecar.local_origin, trust_ids);
+  } catch (const Error& e) {
+    throw Error(e.code(), fmt::format("{}: {}", file.string(), e.what()));
+  }
+  edited.change = describe_moves(edited.region, edited.moves, lattice);
+  return edited;
+}
+
+/// After a commit the file holds the new version's charts, except those that others changed meanwhile: these it still
+/// holds as they were.
+void move_sidecar_on(EditedFile& edited, const std::filesystem::path& file, VersionId published) {
+  const std::vector<ChartId> others = changed_by_others(edited.parts, published);
+  std::map<VersionId, std::vector<ChartId>> charts_at;
+  for (const Sidecar::Part& part : edited.sidecar.parts)
+    for (const ChartId id : part.charts)
+      charts_at[std::binary_search(others.begin(), others.end(), id) ? part.version : published].push_back(id);
+  edited.sidecar.parts.clear();
+  for (auto& [version, charts] : charts_at) {
+    std::sort(charts.begin(), charts.end());
+    edited.sidecar.parts.push_back({version, std::move(charts)});
+  }
+  edited.sidecar.ids_version = VersionId();
+  edited.sidecar.file_hash = hash_file(file);
+  edited.sidecar.nonce = db::new_attempt_id();
+  write_sidecar(file, edited.sidecar);
+}
+
+}  // namespace
+
+CheckoutReport checkout_region(db::Store& store, const std::filesystem::path& repository, const Snapshot& snapshot,
+                               const std::vector<ChartId>& charts, const std::filesystem::path& file,
+                               const FileOptions& options) {
+  const auto start = Clock::now();
+  refuse_to_overwrite(file, options);
+  ReadCost cost;
+  const RegionMesh region = snapshot.read(charts, options.threads, &cost);
+  std::error_code ignored;
+  std::filesystem::remove(sidecar_path(file), ignored);
+  Sidecar sidecar;
+  sidecar.local_origin = write_region(snapshot, region, file, options, true, true);
+  sidecar.repository_id = store.id();
+  sidecar.repository = repository;
+  sidecar.mesh = snapshot.impl().root().name;
+  sidecar.parts = {{snapshot.version(), region.charts}};
+  sidecar.ids_version = snapshot.version();
+  sidecar.file_hash = hash_file(file);
+  sidecar.nonce = db::new_attempt_id();
+  sidecar.painted = options.paint != Paint::none;
+  write_sidecar(file, sidecar);
+  CheckoutReport report = report_for(snapshot, region, cost);
+  report.seconds = seconds_since(start);
+  return report;
+}
+
+CheckoutReport export_mesh(const Snapshot& snapshot, const std::filesystem::path& file, const FileOptions& options) {
+  const auto start = Clock::now();
+  refuse_to_overwrite(file, options);
+  ReadCost cost;
+  const auto charts = snapshot.find({{WholeMesh{}}, 0}, &cost);
+  const RegionMesh region = snapshot.read(charts, options.threads, &cost);
+  (void)write_region(snapshot, region, file, options, false, false);
+  CheckoutReport report = report_for(snapshot, region, cost);
+  report.seconds = seconds_since(start);
+  return report;
+}
+
+ChangeReport status_of_file(const std::shared_ptr<db::Store>& store, const std::filesystem::path& file) {
+  EditedFile edited = read_edited_file(store, file);
+  compare_with_tip(edited.change, edited.parts, "main");
+  return edited.change;
+}
+
+CommitReport commit_file(const std::shared_ptr<db::Store>& store, const std::filesystem::path& file,
+                         const CommitOptions& options) {
+  const auto start = Clock::now();
+  EditedFile edited = read_edited_file(store, file);
+  CommitReport report =
+      commit_moves(edited.parts, edited.change, edited.moves, options, attempt_name(edited.sidecar.nonce, options.branch, edited.moves));
+  if (report.conflicts.empty() && !report.nothing_changed) {
+    move_sidecar_on(edited, file, report.revision);
+  }
+  report.seconds = seconds_since(start);
+  return report;
+}
+
+}  // namespace ramcdb::detail

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "db/store.h"
+#include "ramcdb/repository.h"
+
+namespace ramcdb::detail {
+
+/// Region -> file and sidecar: see Repository::checkout_file.
+CheckoutReport checkout_region(db::Store& store, const std::filesystem::path& repository, const Snapshot& snapshot,
+                               const std::vector<ChartId>& charts, const std::filesystem::path& file,
+                               const FileOptions& options);
+
+/// Whole mesh -> file: see Repository::export_mesh.
+CheckoutReport export_mesh(const Snapshot& snapshot, const std::filesystem::path& file, const FileOptions& options);
+
+[[nodiscard]] ChangeReport status_of_file(const std::shared_ptr<db::Store>& store, const std::filesystem::path& file);
+
+CommitReport commit_file(const std::shared_ptr<db::Store>& store, const std::filesystem::path& file,
+                         const CommitOptions& options);
+
+}  // namespace ramcdb::detail

@@ -1,0 +1,237 @@
+#include "api/commit.h"
+
+#include <fmt/format.h>
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "api/page_rewriter.h"
+#include "api/store_format.h"
+#include "api/version_figures.h"
+#include "ramcdb/error.h"
+
+namespace ramcdb::detail {
+namespace {
+
+double distance(const Lattice& lattice, const VertexMove& move) {
+  double sum = 0;
+  for (int a = 0; a < 3; ++a) {
+    const double d = (static_cast<double>(move.to[a]) - static_cast<double>(move.from[a])) * lattice.step;
+    sum += d * d;
+  }
+  return std::sqrt(sum);
+}
+
+const Snapshot::Impl& newest(std::span<const RegionPart> parts) {
+  return *std::max_element(parts.begin(), parts.end(), [](const RegionPart& a, const RegionPart& b) {
+            return a.at->version() < b.at->version();
+          })->at;
+}
+
+const db::MeshRoot* root_of(const std::vector<db::MeshRoot>& roots, MeshId mesh) {
+  const auto it = std::find_if(roots.begin(), roots.end(), [&](const db::MeshRoot& r) { return r.mesh == mesh; });
+  return it == roots.end() ? nullptr : &*it;
+}
+
+/// The charts that `version` holds in a state other than the region's, or than the one that `mine` wrote.
+std::vector<ChartId> charts_other_than(std::span<const RegionPart> parts, VersionId version, VersionId mine) {
+  const Snapshot::Impl& base = newest(parts);
+  const auto roots = base.store().roots(version);
+  const db::MeshRoot* root = root_of(roots, base.root().mesh);
+  if (!root)
+    throw Error(Errc::conflict, fmt::format("version {} does not hold mesh {}", version.value, base.root().name));
+  const PageIndex there(base.store_handle(), *root);
+  std::vector<ChartId> others;
+  for (const RegionPart& part : parts) {
+    if (*root == part.at->root()) continue;
+    for (const ChartId id : part.charts) {
+      const auto before = part.at->pages().leaf_of(id), now = there.leaf_of(id);
+      const VersionId was = find_chart(*before->leaf, id)->version;
+      const VersionId is = now ? find_chart(*now->leaf, id)->version : VersionId();
+      if (is != was && (!mine || is != mine)) others.push_back(id);
+    }
+  }
+  std::sort(others.begin(), others.end());
+  return others;
+}
+
+std::size_t position_of(const std::vector<ChartId>& charts, ChartId id) {
+  return static_cast<std::size_t>(std::lower_bound(charts.begin(), charts.end(), id) - charts.begin());
+}
+
+CommitReport report_for(const ChangeReport& change, const EncodedEdit& edit) {
+  CommitReport report;
+  report.charts_touched = change.charts_touched.size();
+  report.charts_reencoded = edit.charts.size();
+  report.wires_reencoded = static_cast<std::uint64_t>(
+      std::count_if(edit.wires.begin(), edit.wires.end(), [](const auto& w) { return !w.second.blob.empty(); }));
+  for (const auto& [id, chart] : edit.charts) report.ranges_expanded += chart.expanded_range;
+  report.vertices_moved = change.vertices_moved;
+  report.max_displacement = change.max_displacement;
+  return report;
+}
+
+/// Puts the blobs of an edit and lets the record's totals follow.
+void put_edit(const EncodedEdit& edit, MeshId mesh, db::Writer& writer, MeshRecord& record) {
+  for (const auto& [id, chart] : edit.charts) {
+    writer.put({db::Kind::chart, mesh, id.value, {}, 0}, chart.blob);
+    record.chart_cost.header += chart.cost.header - chart.cost_before.header;
+    record.chart_cost.connectivity += chart.cost.connectivity - chart.cost_before.connectivity;
+    record.chart_cost.geometry += chart.cost.geometry - chart.cost_before.geometry;
+  }
+  for (const auto& [id, wire] : edit.wires) {
+    if (wire.blob.empty()) continue;
+    record.wire_bytes += wire.blob.size() + kBlobOverhead - wire.bytes_before;
+    writer.put({db::Kind::wire, mesh, id.value, {}, 0}, wire.blob);
+  }
+}
+
+db::ChangedCharts changed_charts(MeshId mesh, const EncodedEdit& edit) {
+  db::ChangedCharts changed{mesh, {}};
+  for (const auto& [id, chart] : edit.charts) changed.charts.push_back(id);
+  return changed;
+}
+
+std::string figures_of(const CommitReport& report, std::uint64_t bytes_written) {
+  VersionFigures figures;
+  figures.operation = "commit";
+  figures.charts_touched = report.charts_reencoded;
+  figures.vertices_moved = report.vertices_moved;
+  figures.max_displacement = report.max_displacement;
+  figures.bytes_written = bytes_written;
+  return encode_figures(figures);
+}
+
+/// Steps 1 to 6 of the commit protocol (db/FORMAT.md), with the writer's lock held throughout.
+void publish(const Snapshot::Impl& base, const EncodedEdit& edit, const CommitOptions& options,
+             const std::string& attempt, CommitReport& report) {
+  const auto writer = base.store().writer();
+  const VersionId tip = writer->tip(options.branch);
+  db::CommitInfo info;
+  info.roots = base.store().roots(tip);
+  const db::MeshRoot* found = root_of(info.roots, base.root().mesh);
+  if (!found)
+    throw Error(Errc::conflict, fmt::format("mesh {} is not on branch {}", base.root().name, options.branch),
+                fmt::format("version {}", tip.value), "commit to the branch that you checked out from");
+  const Snapshot::Impl at_tip(base.store_handle(), tip, *found);
+  report.conflicts = find_conflicts(at_tip.pages(), edit);
+  if (!report.conflicts.empty()) return;
+
+  MeshRecord record = at_tip.record();
+  put_edit(edit, base.root().mesh, *writer, record);
+  const db::MeshRoot moved = rewrite_pages(at_tip.pages(), edit, *writer, record);
+  writer->put({db::Kind::mesh_record, base.root().mesh, 1, {}, 0}, encode_record(record));
+  for (db::MeshRoot& root : info.roots)
+    if (root.mesh == moved.mesh) root = moved;
+  info.branch = options.branch;
+  info.expected_tip = tip;
+  info.parents = {tip};
+  info.author = options.author;
+  info.message = options.message;
+  info.attempt = attempt;
+  info.changed = {changed_charts(base.root().mesh, edit)};
+  info.figures = figures_of(report, writer->bytes_put());
+  report.revision = writer->publish(info);
+  report.parent = tip;
+  report.bytes_written = writer->bytes_put();
+}
+
+}  // namespace
+
+ChangeReport describe_moves(const RegionMesh& region, std::span<const VertexMove> moves, const Lattice& lattice) {
+  ChangeReport report;
+  std::map<std::uint64_t, const VertexMove*> by_key;
+  double squares = 0;
+  for (const VertexMove& move : moves) {
+    by_key.emplace(move.key.packed(), &move);
+    const double d = distance(lattice, move);
+    report.max_displacement = std::max(report.max_displacement, d);
+    squares += d * d;
+  }
+  report.vertices_moved = moves.size();
+  if (!moves.empty()) report.rms_displacement = std::sqrt(squares / static_cast<double>(moves.size()));
+
+  std::vector<const VertexMove*> move_of(region.keys.size(), nullptr);
+  if (!moves.empty())
+    for (std::size_t v = 0; v < region.keys.size(); ++v)
+      if (const auto it = by_key.find(region.keys[v].packed()); it != by_key.end()) {
+        move_of[v] = it->second;
+        report.border_vertices_moved += region.outer_border[v];
+      }
+  std::vector<std::set<std::uint32_t>> moved_in(region.charts.size());
+  for (std::size_t f = 0; f < region.faces.size(); ++f)
+    for (const std::uint32_t v : region.faces[f])
+      if (move_of[v]) moved_in[region.chart_of_face[f]].insert(v);
+  for (std::uint32_t v = 0; v < region.keys.size(); ++v)  // isolated vertices are in no face
+    if (move_of[v] && region.keys[v].where == VertexKey::Where::chart)
+      moved_in[position_of(region.charts, ChartId(region.keys[v].id))].insert(v);
+  for (std::size_t c = 0; c < region.charts.size(); ++c) {
+    if (moved_in[c].empty()) continue;
+    ChangeReport::ChartChange change{region.charts[c], moved_in[c].size(), 0};
+    for (const std::uint32_t v : moved_in[c])
+      change.max_displacement = std::max(change.max_displacement, distance(lattice, *move_of[v]));
+    report.per_chart.push_back(change);
+    report.charts_touched.push_back(region.charts[c]);
+  }
+  return report;
+}
+
+void compare_with_tip(ChangeReport& report, std::span<const RegionPart> parts, std::string_view branch) {
+  const Snapshot::Impl& base = newest(parts);
+  report.base = base.version();
+  report.tip = base.store().resolve(branch);
+  report.changed_by_others = charts_other_than(parts, report.tip, {});
+  std::set_intersection(report.changed_by_others.begin(), report.changed_by_others.end(),
+                        report.charts_touched.begin(), report.charts_touched.end(),
+                        std::back_inserter(report.conflicts));
+}
+
+std::vector<ChartId> changed_by_others(std::span<const RegionPart> parts, VersionId version) {
+  return charts_other_than(parts, version, version);
+}
+
+std::string attempt_name(std::string_view nonce, std::string_view branch, std::span<const VertexMove> moves) {
+  XXH3_state_t state;
+  XXH3_128bits_reset(&state);
+  XXH3_128bits_update(&state, nonce.data(), nonce.size());
+  XXH3_128bits_update(&state, branch.data(), branch.size());
+  for (const VertexMove& move : moves) {
+    const std::uint64_t key = move.key.packed();
+    const std::int32_t to[3] = {move.to.x, move.to.y, move.to.z};
+    XXH3_128bits_update(&state, &key, sizeof key);
+    XXH3_128bits_update(&state, to, sizeof to);
+  }
+  const XXH128_hash_t hash = XXH3_128bits_digest(&state);
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
+CommitReport commit_moves(std::span<const RegionPart> parts, const ChangeReport& change,
+                          std::span<const VertexMove> moves, const CommitOptions& options, const std::string& attempt) {
+  const auto start = std::chrono::steady_clock::now();
+  const Snapshot::Impl& base = newest(parts);
+  CommitReport report;
+  if (moves.empty()) {
+    report.nothing_changed = true;
+    report.revision = report.parent = base.version();
+  } else if (const auto published = base.store().published_by(attempt)) {
+    report.revision = *published;
+    report.vertices_moved = change.vertices_moved;
+    report.max_displacement = change.max_displacement;
+    report.charts_touched = change.charts_touched.size();
+    const auto parents = base.store().version(*published).parents;
+    if (!parents.empty()) report.parent = parents.front();
+  } else {
+    const EncodedEdit edit = encode_moves(parts, moves, options.threads);
+    report = report_for(change, edit);
+    publish(base, edit, options, attempt, report);
+  }
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return report;
+}
+
+}  // namespace ramcdb::detail

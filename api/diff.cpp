@@ -1,0 +1,136 @@
+#include "api/diff.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "api/chart_loader.h"
+#include "api/face_matching.h"
+#include "ramcdb/error.h"
+
+namespace ramcdb::detail {
+namespace {
+
+using PageKey = std::pair<PageId, VersionId>;
+
+/// Pages of one level of a tree, and the leaves found on the way.
+struct Frontier {
+  const PageIndex& index;
+  std::set<PageKey> pages;
+  std::map<ChartId, VersionId> charts;  ///< of leaves that the other version does not share
+
+  void open_all() {
+    std::set<PageKey> below;
+    for (const auto& [id, version] : pages) {
+      const auto loaded = index.page(id, version);
+      if (const auto* inner = std::get_if<InnerPage>(&*loaded.page))
+        for (const PageEntry& e : inner->pages) below.insert({e.id, e.version});
+      else
+        for (const PageChart& c : std::get<LeafPage>(*loaded.page).charts) charts.emplace(c.id, c.version);
+    }
+    pages = std::move(below);
+  }
+};
+
+void drop_equal(std::set<PageKey>& a, std::set<PageKey>& b) {
+  std::set<PageKey> only_a, only_b;
+  std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::inserter(only_a, only_a.end()));
+  std::set_difference(b.begin(), b.end(), a.begin(), a.end(), std::inserter(only_b, only_b.end()));
+  a = std::move(only_a);
+  b = std::move(only_b);
+}
+
+/// Sums up displacements over vertices, each counted once though several charts share it.
+class Displacements {
+ public:
+  explicit Displacements(double step) : step_(step) {}
+
+  /// Returns the displacement in model units.
+  double add(const VertexKey& key, LatticePoint from, LatticePoint to) {
+    double sum = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double d = (static_cast<double>(to[a]) - static_cast<double>(from[a])) * step_;
+      sum += d * d;
+    }
+    if (seen_.insert(key.packed()).second) squares_ += sum;
+    return std::sqrt(sum);
+  }
+  [[nodiscard]] std::uint64_t count() const { return seen_.size(); }
+  [[nodiscard]] double rms() const { return seen_.empty() ? 0 : std::sqrt(squares_ / static_cast<double>(seen_.size())); }
+
+ private:
+  double step_;
+  double squares_ = 0;
+  std::set<std::uint64_t> seen_;
+};
+
+/// The new point of every vertex of a chart; empty when the two do not have the same connectivity. Border vertices are
+/// told apart by their keys, inner ones by the faces around them, for re-encoding renumbers them.
+std::vector<LatticePoint> targets_of(const LoadedChart& a, const LoadedChart& b) {
+  if (a.chart.faces.size() != b.chart.faces.size() || a.chart.positions.size() != b.chart.positions.size()) return {};
+  const Matching matching = match_faces({a.chart.positions, a.chart.faces}, {b.chart.positions, b.chart.faces});
+  if (matching.unmatched) return {};
+  std::vector<LatticePoint> to = a.chart.positions;
+  std::vector<bool> known(to.size(), false);
+  for (std::size_t f = 0; f < a.chart.faces.size(); ++f)
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const std::uint32_t v = a.chart.faces[f][i];
+      const FaceMatch m = matching.matches[f];
+      const LatticePoint p = b.chart.positions[b.chart.faces[m.face][(i + m.turn) % 3]];
+      if (known[v] && to[v] != p) return {};
+      to[v] = p;
+      known[v] = true;
+    }
+  return to;
+}
+
+void compare_charts(const LoadedChart& a, const LoadedChart& b, Displacements& sum, DiffReport& report) {
+  ChangeReport::ChartChange change{a.entry.id, 0, 0};
+  const auto to = targets_of(a, b);
+  std::set<std::uint64_t> counted;
+  for (std::size_t v = 0; v < to.size(); ++v) {
+    if (to[v] == a.chart.positions[v]) continue;
+    change.vertices_moved += counted.insert(a.keys[v].packed()).second;
+    change.max_displacement =
+        std::max(change.max_displacement, sum.add(a.keys[v], a.chart.positions[v], to[v]));
+  }
+  report.max_displacement = std::max(report.max_displacement, change.max_displacement);
+  report.per_chart.push_back(change);
+}
+
+}  // namespace
+
+DiffReport diff_versions(const Snapshot::Impl& from, const Snapshot::Impl& to, unsigned threads) {
+  if (from.root().mesh != to.root().mesh || !(from.record().lattice == to.record().lattice))
+    throw Error(Errc::invalid_argument, "these versions do not hold the same mesh",
+                fmt::format("{} and {}", from.root().name, to.root().name), "name one mesh with --mesh");
+  DiffReport report{from.version(), to.version(), {}, {}, {}, 0, 0, 0, {}};
+  Frontier a{from.pages(), {{from.root().root_page, from.root().root_version}}, {}};
+  Frontier b{to.pages(), {{to.root().root_page, to.root().root_version}}, {}};
+  for (drop_equal(a.pages, b.pages); !a.pages.empty() || !b.pages.empty(); drop_equal(a.pages, b.pages)) {
+    a.open_all();
+    b.open_all();
+  }
+  for (const auto& [id, version] : a.charts) {
+    const auto other = b.charts.find(id);
+    if (other == b.charts.end())
+      report.removed.push_back(id);
+    else if (other->second != version)
+      report.changed.push_back(id);
+  }
+  for (const auto& [id, version] : b.charts)
+    if (!a.charts.contains(id)) report.added.push_back(id);
+
+  const auto before = ChartLoader(from).load(report.changed, threads);
+  const auto after = ChartLoader(to).load(report.changed, threads);
+  Displacements sum(from.record().lattice.step);
+  for (std::size_t i = 0; i < before.size(); ++i) compare_charts(before[i], after[i], sum, report);
+  report.vertices_moved = sum.count();
+  report.rms_displacement = sum.rms();
+  return report;
+}
+
+}  // namespace ramcdb::detail

@@ -1,0 +1,179 @@
+#include "api/import.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "api/lattice_choice.h"
+#include "api/mesh_encoder.h"
+#include "api/mesh_file/mesh_file.h"
+#include "api/store_format.h"
+#include "api/topology.h"
+#include "api/version_figures.h"
+#include "chartify/chartify.h"
+#include "codec/page_codec.h"
+#include "ramcdb/error.h"
+
+namespace ramcdb::detail {
+namespace {
+
+std::function<void(double)> stage(const Progress& progress, std::string_view name) {
+  if (!progress) return {};
+  progress(name, 0);
+  return [&progress, name](double done) { progress(name, done); };
+}
+
+std::string mesh_name(const std::filesystem::path& file, const ImportOptions& options) {
+  std::string name = options.name.empty() ? file.stem().string() : options.name;
+  if (name.empty() || name.size() > 200 || name.find_first_of("\n\r\t") != std::string::npos)
+    throw Error(Errc::invalid_argument, fmt::format("'{}' cannot name a mesh", name), {}, "choose one with --name");
+  return name;
+}
+
+void refuse_taken_name(db::Store& store, VersionId tip, const std::string& name) {
+  for (const db::MeshRoot& root : store.roots(tip))
+    if (root.name == name)
+      throw Error(Errc::invalid_argument, fmt::format("the repository already holds a mesh '{}'", name),
+                  fmt::format("version {}", tip.value), "choose another with --name");
+}
+
+mesh_file::MeshData read_file(const std::filesystem::path& file, const ImportOptions& options, ImportReport& report) {
+  mesh_file::MeshData data = mesh_file::read_mesh(file, stage(options.progress, "read"));
+  for (const auto& dropped : data.dropped) report.dropped.push_back({dropped.what, dropped.count});
+  if (data.soup) {
+    const std::size_t before = data.positions.size();
+    mesh_file::weld_exact(data);
+    report.vertices_welded = before - data.positions.size();
+  }
+  report.polygons_triangulated = mesh_file::triangulate(data);
+  return data;
+}
+
+/// Snaps every position, and measures how far the farthest moved along an axis.
+chartify::IndexedMesh snap_to(const Lattice& lattice, const mesh_file::MeshData& data, double& measured_error) {
+  chartify::IndexedMesh mesh;
+  mesh.positions.reserve(data.positions.size());
+  for (const Point& p : data.positions) {
+    mesh.positions.push_back(lattice.snap(p));
+    const Point q = lattice.position(mesh.positions.back());
+    for (int a = 0; a < 3; ++a) measured_error = std::max(measured_error, std::abs(q[a] - p[a]));
+  }
+  mesh.faces.reserve(data.corners.size() / 3);
+  for (std::size_t c = 0; c + 2 < data.corners.size(); c += 3)
+    mesh.faces.push_back({data.corners[c], data.corners[c + 1], data.corners[c + 2]});
+  return mesh;
+}
+
+void note_topology(MeshRecord& record, const chartify::IndexedMesh& mesh) {
+  const Topology t = analyze(mesh);
+  record.vertices = mesh.positions.size();
+  record.faces = mesh.faces.size();
+  record.components = t.components;
+  record.boundary_loops = t.boundary_loops;
+  record.nonmanifold_edges = t.nonmanifold_edges;
+  record.nonmanifold_vertices = t.nonmanifold_vertices;
+  record.inconsistent_edges = t.inconsistent_edges;
+  record.degenerate_faces = t.degenerate_faces;
+  record.duplicate_faces = t.duplicate_faces;
+  record.isolated_vertices = t.isolated_vertices;
+}
+
+void note_encoding(MeshRecord& record, const EncodedMesh& encoded) {
+  record.charts = encoded.charts.size();
+  record.wires = encoded.wires.size();
+  record.corners = encoded.corner_entries.size();
+  record.chart_cost = encoded.cost;
+  record.next_chart = ChartId(static_cast<std::uint32_t>(record.charts + 1));
+  record.next_wire = WireId(static_cast<std::uint32_t>(record.wires + 1));
+  record.next_corner = CornerId(static_cast<std::uint32_t>(record.corners + 1));
+  for (const Buffer& wire : encoded.wires)
+    if (!wire.empty()) record.wire_bytes += wire.size() + kBlobOverhead;
+}
+
+/// Puts all blobs under the attempt's version and returns where the mesh stands.
+db::MeshRoot put_mesh(db::Writer& writer, const std::string& name, EncodedMesh& encoded, MeshRecord& record) {
+  const MeshId mesh = writer.new_mesh_id();
+  const VersionId version = writer.version();
+  const std::vector<Page> pages = build_pages(encoded, version);
+  record.next_page = PageId(static_cast<std::uint32_t>(pages.size() + 1));
+  for (std::uint32_t p = 0; p < pages.size(); ++p) {
+    Buffer blob = codec::encode_page(pages[p]);
+    record.page_bytes += blob.size() + kBlobOverhead;
+    writer.put({db::Kind::page, mesh, p + 1, {}, 0}, std::move(blob));
+  }
+  for (std::uint32_t c = 0; c < encoded.charts.size(); ++c)
+    writer.put({db::Kind::chart, mesh, c + 1, {}, 0}, std::move(encoded.charts[c]));
+  for (std::uint32_t w = 0; w < encoded.wires.size(); ++w)
+    if (!encoded.wires[w].empty()) writer.put({db::Kind::wire, mesh, w + 1, {}, 0}, std::move(encoded.wires[w]));
+  writer.put({db::Kind::mesh_record, mesh, 1, {}, 0}, encode_record(record));
+  return {mesh, name, PageId(static_cast<std::uint32_t>(pages.size())), version, version};
+}
+
+db::ChangedCharts all_charts(MeshId mesh, std::uint64_t count) {
+  db::ChangedCharts changed{mesh, {}};
+  for (std::uint32_t c = 1; c <= count; ++c) changed.charts.emplace_back(c);
+  return changed;
+}
+
+void publish(db::Store& store, const std::string& name, const std::filesystem::path& file, const ImportOptions& options,
+             EncodedMesh& encoded, MeshRecord& record) {
+  const auto writer = store.writer();
+  const VersionId tip = writer->tip(options.branch);
+  refuse_taken_name(store, tip, name);
+  db::CommitInfo info;
+  info.branch = options.branch;
+  info.expected_tip = tip;
+  if (tip) info.parents = {tip};
+  info.author = options.author;
+  info.message = options.message.empty() ? "import " + file.filename().string() : options.message;
+  info.attempt = db::new_attempt_id();
+  info.roots = store.roots(tip);
+  info.roots.push_back(put_mesh(*writer, name, encoded, record));
+  info.changed = {all_charts(info.roots.back().mesh, record.charts)};
+  VersionFigures figures;
+  figures.operation = "import";
+  figures.charts_touched = record.charts;
+  figures.vertices_added = record.vertices;
+  figures.bytes_written = writer->bytes_put();
+  info.figures = encode_figures(figures);
+  (void)writer->publish(info);
+}
+
+}  // namespace
+
+ImportReport import_mesh(db::Store& store, const std::filesystem::path& file, const ImportOptions& options,
+                         std::string& name) {
+  const auto start = std::chrono::steady_clock::now();
+  ImportReport report;
+  name = mesh_name(file, options);
+  refuse_taken_name(store, store.resolve(options.branch), name);
+  MeshRecord record;
+  chartify::CanonicalMesh canonical;
+  {
+    const mesh_file::MeshData data = read_file(file, options, report);
+    record.lattice = choose_lattice(data.positions, options);
+    record.target_faces = options.chart_faces;
+    canonical = chartify::canonical_order(snap_to(record.lattice, data, report.measured_error));
+  }
+  note_topology(record, canonical.mesh);
+  for (const LatticePoint p : canonical.mesh.positions) record.range.add(p);
+
+  chartify::Options chartify_options;
+  chartify_options.target_faces = options.chart_faces;
+  chartify_options.method = options.paper_chartify ? chartify::Method::paper : chartify::Method::refined;
+  chartify_options.threads = options.threads;
+  chartify_options.progress = stage(options.progress, "chartify");
+  const chartify::Charts charts = chartify::chartify(canonical.mesh, chartify_options);
+  const chartify::WireNet net = chartify::build_wire_net(canonical.mesh, charts);
+
+  EncodedMesh encoded = encode_mesh(canonical.mesh, net, record, codec::CoderTables{}, options.threads,
+                                    stage(options.progress, "encode"));
+  note_encoding(record, encoded);
+  stage(options.progress, "store");
+  publish(store, name, file, options, encoded, record);
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return report;
+}
+
+}  // namespace ramcdb::detail

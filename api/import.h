@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "db/store.h"
+#include "ramcdb/repository.h"
+
+namespace ramcdb::detail {
+
+/// file -> lattice -> canonical order -> charts -> wire-net -> blobs -> one version. The hops are the functions that
+/// import.cpp calls, in this order. The report's `info` is left to the caller, who has the snapshot.
+/// \param name gets the name that the mesh was given.
+[[nodiscard]] ImportReport import_mesh(db::Store& store, const std::filesystem::path& file,
+                                       const ImportOptions& options, std::string& name);
+
+}  // namespace ramcdb::detail

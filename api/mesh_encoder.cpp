@@ -1,0 +1,111 @@
+#include "api/mesh_encoder.h"
+
+#include <algorithm>
+#include <set>
+
+#include "api/page_index.h"
+#include "api/parallel.h"
+#include "codec/wire_codec.h"
+
+namespace ramcdb::detail {
+namespace {
+
+PageChart chart_entry(const chartify::NetChart& chart, std::uint32_t index, TableId table) {
+  PageChart entry;
+  entry.id = ChartId(index + 1);
+  entry.table = table;
+  entry.faces = static_cast<std::uint32_t>(chart.chart.faces.size());
+  entry.inner_vertices = static_cast<std::uint32_t>(chart.chart.positions.size()) - chart.chart.border_count();
+  for (const LatticePoint p : chart.chart.positions) entry.box.add(p);
+  for (const auto& steps : chart.loops) {
+    WireLoop& loop = entry.loops.emplace_back();
+    for (const chartify::NetLoopStep step : steps) loop.push_back({WireId(step.wire + 1), step.reversed});
+  }
+  return entry;
+}
+
+PageWire wire_entry(const chartify::NetWire& wire, std::uint32_t index) {
+  PageWire entry;
+  entry.id = WireId(index + 1);
+  entry.begin = CornerId(wire.begin_corner + 1);
+  entry.end = CornerId(wire.end_corner + 1);
+  entry.inner_points = static_cast<std::uint32_t>(wire.vertices.size() - 2);
+  for (const std::uint32_t chart : wire.charts) entry.charts.emplace_back(chart + 1);
+  return entry;
+}
+
+Buffer encode_path(const chartify::IndexedMesh& mesh, const std::vector<std::uint32_t>& path) {
+  Wire wire;
+  for (const std::uint32_t v : path) wire.points.push_back(mesh.positions[v]);
+  return path.size() > 2 ? codec::encode_wire(wire) : Buffer{};
+}
+
+LeafPage build_leaf(const EncodedMesh& mesh, std::size_t first, std::size_t last, VersionId version) {
+  LeafPage leaf;
+  std::set<WireId> wires;
+  std::set<CornerId> corners;
+  for (std::size_t c = first; c < last; ++c) {
+    leaf.charts.push_back(mesh.chart_entries[c]);
+    leaf.charts.back().version = version;
+    for (const WireLoop& loop : mesh.chart_entries[c].loops)
+      for (const DirectedWire step : loop) wires.insert(step.wire);
+  }
+  for (const WireId id : wires) {
+    leaf.wires.push_back(mesh.wire_entries[id.value - 1]);
+    leaf.wires.back().version = version;
+    corners.insert({leaf.wires.back().begin, leaf.wires.back().end});
+  }
+  for (const CornerId id : corners) leaf.corners.push_back(mesh.corner_entries[id.value - 1]);
+  return leaf;
+}
+
+}  // namespace
+
+EncodedMesh encode_mesh(const chartify::IndexedMesh& mesh, const chartify::WireNet& net, const MeshRecord& record,
+                        const codec::CoderTables& tables, unsigned threads,
+                        const std::function<void(double)>& progress) {
+  EncodedMesh out;
+  out.charts.resize(net.charts.size());
+  out.chart_entries.resize(net.charts.size());
+  std::vector<codec::ChartCost> costs(net.charts.size());
+  parallel_for(
+      net.charts.size(), threads,
+      [&](std::size_t c) {
+        auto encoded = codec::encode_chart(net.charts[c].chart, record.profile, tables, record.range);
+        out.charts[c] = std::move(encoded.blob);
+        costs[c] = encoded.cost;
+        out.chart_entries[c] = chart_entry(net.charts[c], static_cast<std::uint32_t>(c), record.table);
+      },
+      progress);
+  for (const codec::ChartCost& cost : costs) {
+    out.cost.header += cost.header;
+    out.cost.connectivity += cost.connectivity;
+    out.cost.geometry += cost.geometry;
+  }
+  for (std::uint32_t w = 0; w < net.wires.size(); ++w) {
+    out.wires.push_back(encode_path(mesh, net.wires[w].vertices));
+    out.wire_entries.push_back(wire_entry(net.wires[w], w));
+  }
+  for (std::uint32_t k = 0; k < net.corners.size(); ++k)
+    out.corner_entries.push_back({CornerId(k + 1), mesh.positions[net.corners[k]]});
+  return out;
+}
+
+std::vector<Page> build_pages(const EncodedMesh& mesh, VersionId version) {
+  std::vector<Page> pages;
+  for (std::size_t c = 0; c < mesh.chart_entries.size(); c += kLeafCharts)
+    pages.emplace_back(build_leaf(mesh, c, std::min(c + kLeafCharts, mesh.chart_entries.size()), version));
+  for (std::size_t level = 0; pages.size() - level > 1;) {
+    const std::size_t level_end = pages.size();
+    for (std::size_t first = level; first < level_end; first += kInnerPages) {
+      InnerPage inner;
+      for (std::size_t p = first; p < std::min(first + kInnerPages, level_end); ++p)
+        inner.pages.push_back(entry_for(pages[p], PageId(static_cast<std::uint32_t>(p + 1)), version));
+      pages.emplace_back(std::move(inner));
+    }
+    level = level_end;
+  }
+  return pages;
+}
+
+}  // namespace ramcdb::detail

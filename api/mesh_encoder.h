@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "api/mesh_record.h"
+#include "chartify/wire_net_builder.h"
+#include "codec/tables.h"
+#include "ramcdb/wire_net.h"
+
+namespace ramcdb::detail {
+
+/// All blobs of a new mesh but its pages, with the ids that they get: position in the wire-net + 1.
+struct EncodedMesh {
+  std::vector<Buffer> charts;
+  std::vector<Buffer> wires;  ///< empty for a wire without inner points
+  std::vector<PageChart> chart_entries;
+  std::vector<PageWire> wire_entries;
+  std::vector<PageCorner> corner_entries;
+  codec::ChartCost cost;
+};
+
+/// Codes every chart and wire. Versions in the entries are left 0: they are known once the writer is.
+[[nodiscard]] EncodedMesh encode_mesh(const chartify::IndexedMesh& mesh, const chartify::WireNet& net,
+                                      const MeshRecord& record, const codec::CoderTables& tables, unsigned threads,
+                                      const std::function<void(double)>& progress);
+
+/// The pages of a new mesh, from the leaves up to the root, which is the last. Their ids are positions + 1.
+[[nodiscard]] std::vector<Page> build_pages(const EncodedMesh& mesh, VersionId version);
+
+}  // namespace ramcdb::detail

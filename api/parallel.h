@@ -1,0 +1,46 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace ramcdb::detail {
+
+/// Calls work(i) for i = 0 .. count - 1 on up to `threads` threads. `progress`, when given, gets the share that is done,
+/// on the calling thread. The first exception of any of them ends the rest and is thrown here.
+inline void parallel_for(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& work,
+                         const std::function<void(double)>& progress = {}) {
+  std::atomic<std::size_t> next{0};
+  std::atomic<bool> stop{false};
+  std::exception_ptr failure;
+  std::mutex failure_mutex;
+  const auto guarded = [&](auto&& step) {
+    try {
+      step();
+    } catch (...) {
+      const std::lock_guard lock(failure_mutex);
+      if (!failure) failure = std::current_exception();
+      stop = true;
+    }
+  };
+  const auto drain = [&](bool reports) {
+    for (std::size_t i; !stop && (i = next++) < count;) {
+      guarded([&] { work(i); });
+      if (reports && progress) guarded([&] { progress(static_cast<double>(i) / static_cast<double>(count)); });
+    }
+  };
+  {
+    std::vector<std::jthread> helpers;
+    const std::size_t extra = std::min<std::size_t>(threads > 1 ? threads - 1 : 0, count > 1 ? count - 1 : 0);
+    for (std::size_t t = 0; t < extra; ++t) helpers.emplace_back([&] { drain(false); });
+    drain(true);
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace ramcdb::detail

@@ -1,0 +1,136 @@
+#include "ramcdb/snapshot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "api/region_mesh.h"
+#include "api/region_query.h"
+#include "api/snapshot_impl.h"
+#include "api/store_format.h"
+#include "ramcdb/error.h"
+
+namespace ramcdb {
+namespace {
+
+/// From 1/256 bit to whole bytes, so that the parts add up to the payload: what rounding leaves goes to the headers.
+MeshBytes bytes_of(const Snapshot::Impl& at) {
+  const detail::MeshRecord& record = at.record();
+  const auto whole = [](std::uint64_t cost) { return (cost + 1024) / 2048; };
+  MeshBytes bytes;
+  bytes.wire_net = record.page_bytes;
+  bytes.wires = record.wire_bytes;
+  bytes.connectivity = whole(record.chart_cost.connectivity);
+  bytes.geometry = whole(record.chart_cost.geometry);
+  const std::uint64_t charts =
+      whole(record.chart_cost.header + record.chart_cost.connectivity + record.chart_cost.geometry) +
+      record.charts * detail::kBlobOverhead;
+  bytes.chart_headers = charts - bytes.connectivity - bytes.geometry;
+  bytes.tables = record.table_bytes + at.record_bytes();
+  bytes.payload = bytes.wire_net + bytes.wires + charts + bytes.attributes + bytes.tables;
+  const auto usage = at.store().usage();
+  bytes.store = usage.blob_file + usage.catalogue;
+  return bytes;
+}
+
+MeshInfo::Spread spread_of(std::vector<std::uint32_t> sizes) {
+  if (sizes.empty()) return {};
+  std::sort(sizes.begin(), sizes.end());
+  const auto at = [&](double share) {
+    return sizes[std::min(sizes.size() - 1, static_cast<std::size_t>(share * static_cast<double>(sizes.size())))];
+  };
+  return {sizes.front(), at(0.5), at(0.95), sizes.back()};
+}
+
+std::vector<std::uint32_t> chart_sizes(const detail::PageIndex& pages) {
+  std::vector<std::uint32_t> sizes;
+  pages.visit([](const LatticeBox&) { return true; },
+              [&](const detail::LeafRef& ref) {
+                for (const PageChart& chart : ref.leaf->charts) sizes.push_back(chart.faces);
+              });
+  return sizes;
+}
+
+ChartSummary summary_of(const Snapshot::Impl& at, db::BlobReader& reader, const LeafPage& leaf,
+                        const PageChart& chart) {
+  ChartSummary summary;
+  summary.id = chart.id;
+  summary.faces = chart.faces;
+  summary.inner_vertices = chart.inner_vertices;
+  std::set<ChartId> neighbours;
+  for (const WireLoop& loop : chart.loops)
+    for (const DirectedWire step : loop) {
+      const PageWire& wire = *detail::find_wire(leaf, step.wire);
+      summary.border_vertices += wire.inner_points + 1;
+      neighbours.insert(wire.charts.begin(), wire.charts.end());
+    }
+  neighbours.erase(chart.id);
+  summary.neighbours.assign(neighbours.begin(), neighbours.end());
+  summary.lo = at.record().lattice.position(chart.box.lo);
+  summary.hi = at.record().lattice.position(chart.box.hi);
+  summary.version = chart.version;
+  summary.bytes = reader.get({db::Kind::chart, at.root().mesh, chart.id.value, chart.version, 0}).size() +
+                  detail::kBlobOverhead;
+  return summary;
+}
+
+}  // namespace
+
+VersionId Snapshot::version() const { return impl_->version(); }
+const Lattice& Snapshot::lattice() const { return impl_->record().lattice; }
+
+MeshInfo Snapshot::info() const {
+  const detail::MeshRecord& record = impl_->record();
+  MeshInfo info;
+  info.mesh = impl_->root().name;
+  info.revision = impl_->version();
+  info.vertices = record.vertices;
+  info.faces = record.faces;
+  info.charts = record.charts;
+  info.wires = record.wires;
+  info.corners = record.corners;
+  info.components = record.components;
+  info.boundary_loops = record.boundary_loops;
+  info.nonmanifold_edges = record.nonmanifold_edges;
+  info.nonmanifold_vertices = record.nonmanifold_vertices;
+  info.inconsistent_edges = record.inconsistent_edges;
+  info.isolated_vertices = record.isolated_vertices;
+  info.degenerate_faces = record.degenerate_faces;
+  info.duplicate_faces = record.duplicate_faces;
+  info.lattice = record.lattice;
+  info.max_error = record.lattice.step / 2;
+  info.profile = "dense";
+  info.target_faces = record.target_faces;
+  const LatticeBox box = impl_->pages().box();
+  info.lo = record.lattice.position(box.lo);
+  info.hi = record.lattice.position(box.hi);
+  info.bytes = bytes_of(*impl_);
+  info.chart_faces = spread_of(chart_sizes(impl_->pages()));
+  return info;
+}
+
+std::vector<ChartId> Snapshot::find(const Region& region, ReadCost* cost) const {
+  return detail::find_charts(*impl_, region, cost);
+}
+
+std::vector<ChartSummary> Snapshot::describe(const std::vector<ChartId>& charts) const {
+  std::vector<ChartSummary> summaries;
+  const auto reader = impl_->store().reader();
+  for (const ChartId id : charts) {
+    const auto ref = impl_->pages().leaf_of(id);
+    if (!ref) throw Error(Errc::not_found, fmt::format("there is no chart {}", id.value), impl_->root().name);
+    summaries.push_back(summary_of(*impl_, *reader, *ref->leaf, *detail::find_chart(*ref->leaf, id)));
+  }
+  return summaries;
+}
+
+RegionMesh Snapshot::read(const std::vector<ChartId>& charts, unsigned threads, ReadCost* cost) const {
+  std::vector<ChartId> ascending(charts);
+  std::sort(ascending.begin(), ascending.end());
+  ascending.erase(std::unique(ascending.begin(), ascending.end()), ascending.end());
+  const detail::RegionPart part{impl_.get(), std::move(ascending)};
+  return detail::load_region(std::span(&part, 1), threads, cost);
+}
+
+}  // namespace ramcdb

@@ -1,0 +1,32 @@
+#include "api/snapshot_impl.h"
+
+#include <fmt/format.h>
+
+#include "api/store_format.h"
+#include "ramcdb/error.h"
+
+namespace ramcdb {
+namespace {
+
+/// Waits for nothing: pinning a version that was pruned meanwhile fails by itself, in db.
+Buffer read_record(db::Store& store, const db::MeshRoot& root) {
+  return store.reader()->get({db::Kind::mesh_record, root.mesh, 1, root.record_version, 0});
+}
+
+}  // namespace
+
+Snapshot::Impl::Impl(std::shared_ptr<db::Store> store, VersionId version, const db::MeshRoot& root)
+    : store_(std::move(store)), version_(version), pin_(store_->pin(version, "snapshot")), pages_(store_, root) {
+  const Buffer blob = read_record(*store_, root);
+  record_bytes_ = blob.size() + detail::kBlobOverhead;
+  record_ = detail::decode_record(blob, fmt::format("mesh {}, version {}", root.name, root.record_version.value));
+}
+
+const codec::CoderTables& Snapshot::Impl::tables(TableId table) const {
+  if (table)
+    throw Error(Errc::unsupported_version, fmt::format("coder table {} is unknown", table.value), root().name,
+                "use a newer ramcdb");
+  return built_in_tables_;
+}
+
+}  // namespace ramcdb

@@ -1,0 +1,147 @@
+#include "api/topology.h"
+
+#include <algorithm>
+#include <numeric>
+#include <span>
+#include <vector>
+
+namespace ramcdb::detail {
+namespace {
+
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
+
+  std::uint32_t root(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  /// True when the two were apart.
+  bool join(std::uint32_t a, std::uint32_t b) {
+    a = root(a);
+    b = root(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+    return a != b;
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+bool is_degenerate(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+
+/// One face's pass of an edge.
+struct Pass {
+  std::uint32_t low, high;  ///< the edge's vertices
+  std::uint32_t corner;     ///< 3 * face + position of the pass's first vertex
+  bool forward;             ///< from low to high
+};
+
+std::vector<Pass> sorted_passes(const std::vector<Triangle>& faces) {
+  std::vector<Pass> passes;
+  passes.reserve(faces.size() * 3);
+  for (std::uint32_t f = 0; f < faces.size(); ++f) {
+    if (is_degenerate(faces[f])) continue;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = faces[f][i], b = faces[f][(i + 1) % 3];
+      passes.push_back({std::min(a, b), std::max(a, b), 3 * f + i, a < b});
+    }
+  }
+  std::sort(passes.begin(), passes.end(), [](const Pass& a, const Pass& b) {
+    return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
+  });
+  return passes;
+}
+
+/// Calls `edge` with all passes of one edge, edge after edge.
+template <class Visit>
+void for_each_edge(const std::vector<Pass>& passes, Visit&& edge) {
+  for (std::size_t begin = 0, end; begin < passes.size(); begin = end) {
+    for (end = begin; end < passes.size() && passes[end].low == passes[begin].low && passes[end].high == passes[begin].high;)
+      ++end;
+    edge(std::span(passes).subspan(begin, end - begin));
+  }
+}
+
+std::uint64_t count_components(const chartify::IndexedMesh& mesh, const std::vector<bool>& used) {
+  DisjointSets sets(mesh.positions.size());
+  auto count = static_cast<std::uint64_t>(std::count(used.begin(), used.end(), true));
+  for (const Triangle& t : mesh.faces) count -= static_cast<unsigned>(sets.join(t[0], t[1])) + sets.join(t[0], t[2]);
+  return count;
+}
+
+std::uint64_t count_boundary_loops(const std::vector<Pass>& passes, std::size_t vertices) {
+  DisjointSets sets(vertices);
+  std::vector<bool> on_border(vertices, false);
+  std::uint64_t loops = 0;
+  for_each_edge(passes, [&](std::span<const Pass> edge) {
+    if (edge.size() != 1) return;
+    for (const std::uint32_t v : {edge[0].low, edge[0].high}) {
+      loops += !on_border[v];
+      on_border[v] = true;
+    }
+    loops -= sets.join(edge[0].low, edge[0].high);
+  });
+  return loops;
+}
+
+/// Vertices whose face corners stay in several groups after corners are joined over every edge at the vertex.
+std::uint64_t count_nonmanifold_vertices(const chartify::IndexedMesh& mesh, const std::vector<Pass>& passes) {
+  DisjointSets corners(mesh.faces.size() * 3);
+  std::vector<bool> on_bad_edge(mesh.positions.size(), false);
+  const auto corner_at = [&](std::uint32_t corner, std::uint32_t vertex) {
+    const std::uint32_t face = corner / 3, i = corner % 3;
+    return mesh.faces[face][i] == vertex ? corner : 3 * face + (i + 1) % 3;
+  };
+  for_each_edge(passes, [&](std::span<const Pass> edge) {
+    for (const std::uint32_t v : {edge[0].low, edge[0].high}) {
+      for (const Pass& pass : edge) corners.join(corner_at(edge[0].corner, v), corner_at(pass.corner, v));
+      if (edge.size() > 2) on_bad_edge[v] = true;
+    }
+  });
+  constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  std::vector<std::uint32_t> group(mesh.positions.size(), kNone);
+  std::vector<bool> split(mesh.positions.size(), false);
+  for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
+    if (is_degenerate(mesh.faces[f])) continue;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const std::uint32_t v = mesh.faces[f][i], root = corners.root(3 * f + i);
+      if (group[v] == kNone) group[v] = root;
+      if (group[v] != root && !on_bad_edge[v]) split[v] = true;
+    }
+  }
+  return static_cast<std::uint64_t>(std::count(split.begin(), split.end(), true));
+}
+
+std::uint64_t count_duplicates(const std::vector<Triangle>& faces) {
+  std::vector<Triangle> sorted(faces);
+  for (Triangle& t : sorted) std::sort(t.begin(), t.end());
+  std::sort(sorted.begin(), sorted.end());
+  std::uint64_t duplicates = 0;
+  for (std::size_t i = 1; i < sorted.size(); ++i) duplicates += sorted[i] == sorted[i - 1];
+  return duplicates;
+}
+
+}  // namespace
+
+Topology analyze(const chartify::IndexedMesh& mesh) {
+  Topology t;
+  std::vector<bool> used(mesh.positions.size(), false);
+  for (const Triangle& face : mesh.faces) {
+    for (const std::uint32_t v : face) used[v] = true;
+    t.degenerate_faces += is_degenerate(face);
+  }
+  t.isolated_vertices = static_cast<std::uint64_t>(std::count(used.begin(), used.end(), false));
+  t.components = count_components(mesh, used);
+  const std::vector<Pass> passes = sorted_passes(mesh.faces);
+  for_each_edge(passes, [&](std::span<const Pass> edge) {
+    t.nonmanifold_edges += edge.size() > 2;
+    t.inconsistent_edges += edge.size() == 2 && edge[0].forward == edge[1].forward;
+  });
+  t.boundary_loops = count_boundary_loops(passes, mesh.positions.size());
+  t.nonmanifold_vertices = count_nonmanifold_vertices(mesh, passes);
+  t.duplicate_faces = count_duplicates(mesh.faces);
+  return t;
+}
+
+}  // namespace ramcdb::detail
