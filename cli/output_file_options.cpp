@@ -18,7 +18,7 @@ void add_output_file(CLI::App& verb, OutputFileOptions& options) {
   verb.add_option("-o,--output", options.file, "The file to write; its extension says the format")
       ->type_name("FILE")
       ->required();
-  verb.add_flag("--force", options.force, "Overwrite the file if it exists");
+  verb.add_flag("--force", options.force, "Overwrite the file even if an edit would be lost");
   verb.add_option("--color", options.color,
                   "Paint the faces by chart, bits (per vertex) or version (of the last change); "
                   "such a file is to look at, commit refuses it")

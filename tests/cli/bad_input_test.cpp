@@ -129,8 +129,7 @@ TEST_F(BadInput, SidecarThatIsNoSidecar) {
   const std::string file = checked_out("middle.ply");
   for (const char* text : {"", "{}", "not json", "{\"repository\": 7}", "[[[[[["}) {
     write_text(file + ".ramcdb.json", text);
-    const Outcome outcome = run_ramcdb({"status", file});
-    expect_failure(outcome, outcome.code == 4 ? 4 : 1);
+    expect_failure(run_ramcdb({"status", file}), 1);
   }
 }
 

