@@ -38,4 +38,14 @@ run(${CMAKE_COMMAND} -G Ninja -S ${SOURCE}/tests/house/consumer -B ${WORK}/build
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/example ${WORK}/tetrahedron.obj ${WORK}/example.ramcdb)
 run(${WORK}/prefix/bin/ramcdb verify ${WORK}/example.ramcdb)
+
+# The loop that the README shows, pasted.
+if(EXISTS /usr/share/glmark2/models/bunny.obj)
+  string(REGEX MATCHALL "\n    ramcdb [^\n]*" loop "${readme}")
+  list(JOIN loop "" loop)
+  file(WRITE ${WORK}/loop.sh "set -eux\ncd ${WORK}${loop}\n")
+  run(${CMAKE_COMMAND} -E env PATH=${WORK}/prefix/bin:$ENV{PATH} bash ${WORK}/loop.sh)
+else()
+  message("skipped: the README's loop, since glmark2-data is not installed")
+endif()
 file(REMOVE_RECURSE ${WORK})

@@ -3,13 +3,13 @@
 include(CMakePackageConfigHelpers)
 
 target_compile_features(ramcdb_vocabulary INTERFACE cxx_std_20)
-foreach(folder vocabulary codec chartify db)
+foreach(folder vocabulary codec chartify db mesh_file)
   set_target_properties(ramcdb_${folder} PROPERTIES EXPORT_NAME ${folder})
 endforeach()
 add_library(ramcdb::ramcdb ALIAS ramcdb) # the name that works with add_subdirectory too
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/ramcdb)
-install(TARGETS ramcdb_vocabulary ramcdb_codec ramcdb_chartify ramcdb_db ramcdb EXPORT ramcdbTargets
+install(TARGETS ramcdb_vocabulary ramcdb_codec ramcdb_chartify ramcdb_db ramcdb_mesh_file ramcdb EXPORT ramcdbTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/api/include/ramcdb DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
         FILES_MATCHING PATTERN *.h)
