@@ -1,0 +1,42 @@
+#pragma once
+
+#include "codec/chart_codec.h"
+#include "codec/dense_surface.h"
+#include "codec/varint.h"
+
+namespace ramcdb::codec {
+
+/// A chart blob begins with
+///
+///   header  = format:1 coding:1 flags:1 inner_vertices:varint faces:varint [box] [edge_exponent:1] check:4
+///   box     = 3 x (low: signed varint, high - low: varint)     when flags has kOwnBox
+///   edge_exponent                                              when coding is dense
+///
+/// and goes on with what the coder wrote. Format and coding are never 0. check: the lower half of XXH3-64 over
+/// everything that decoding the blob takes and gives (chart_check()), so that a wrong border, table or range, a damaged
+/// blob and a miscompiled decoder are all noticed.
+struct ChartHeader {
+  ChartCoding coding = ChartCoding::dense;
+  ChartCounts counts;
+  bool own_box = false;
+  LatticeBox box;  ///< of all inner vertices: the mesh's range, or with own_box the chart's own
+  int edge_exponent = 0;
+  std::uint32_t check = 0;
+};
+
+/// Formats that were ever written: 1.
+inline constexpr std::uint8_t kChartFormat = 1;
+
+/// What a chart may have; far more than any that pays. Encoders refuse more, decoders do not believe it.
+inline constexpr std::uint32_t kMaxChartVertices = 1u << 26;
+inline constexpr std::uint32_t kMaxChartFaces = 1u << 27;
+
+void put_chart_header(Buffer& out, const ChartHeader& header);
+
+/// \param range what the box is unless the chart has its own
+[[nodiscard]] ChartHeader take_chart_header(ByteReader& reader, const LatticeBox& range);
+
+/// The check of a chart that was coded with `range` and `tables`.
+[[nodiscard]] std::uint32_t chart_check(const Chart& chart, const LatticeBox& range, const CoderTables& tables);
+
+}  // namespace ramcdb::codec

@@ -1,0 +1,89 @@
+#include "codec/dense_coder.h"
+
+#include "codec/dense_guide.h"
+
+namespace ramcdb::codec {
+
+namespace {
+
+template <class Walk>
+DenseChart result_of(const Walk& walk, std::uint64_t total_cost) {
+  DenseChart chart;
+  const DenseSurface& surface = walk.surface();
+  chart.positions.reserve(surface.vertex_count());
+  for (std::uint32_t v = 0; v < surface.vertex_count(); ++v) chart.positions.push_back(surface[v].position);
+  chart.faces = surface.faces();
+  chart.geometry_cost = walk.geometry_cost();
+  chart.connectivity_cost = total_cost - chart.geometry_cost;
+  return chart;
+}
+
+/// Whether every face of `chart` was coded, once, with its own corners.
+bool coded_faces_match(const Chart& chart, const DenseStream& stream, const std::vector<std::uint32_t>& face_edges) {
+  if (face_edges.size() != chart.faces.size() || stream.coded.faces.size() != chart.faces.size()) return false;
+  std::vector<bool> coded(chart.faces.size(), false);
+  for (std::size_t f = 0; f < face_edges.size(); ++f) {
+    const std::uint32_t source = face_edges[f] / 3, first = face_edges[f] % 3;
+    if (coded[source]) return false;
+    coded[source] = true;
+    for (std::uint32_t c = 0; c < 3; ++c)
+      if (stream.source_vertex[stream.coded.faces[f][c]] != chart.faces[source][(first + c) % 3]) return false;
+  }
+  return true;
+}
+
+/// Whether every vertex of `chart` was coded, once, where it is.
+bool coded_vertices_match(const Chart& chart, const DenseStream& stream) {
+  const auto& positions = stream.coded.positions;
+  if (positions.size() != chart.positions.size() || stream.source_vertex.size() != positions.size()) return false;
+  std::vector<bool> coded(positions.size(), false);
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    const std::uint32_t source = stream.source_vertex[v];
+    if (coded[source] || positions[v] != chart.positions[source]) return false;
+    coded[source] = true;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<DenseStream> encode_dense(const Chart& chart, const DenseContext& context) {
+  const std::optional<HalfEdges> edges = HalfEdges::of(chart);
+  if (!edges) return std::nullopt;
+  RangeEncoder encoder;
+  ChartGuide guide(chart, *edges);
+  DenseWalk walk(encoder, guide, context);
+  const std::uint64_t start = encoder.position();
+  walk.run();
+  DenseStream stream;
+  stream.coded = result_of(walk, encoder.position() - start);
+  stream.bytes = encoder.finish();
+  stream.source_vertex = guide.source_vertices();
+  if (!coded_vertices_match(chart, stream) || !coded_faces_match(chart, stream, guide.source_faces()))
+    return std::nullopt;
+  return stream;
+}
+
+DenseChart decode_dense(Bytes stream, const DenseContext& context) {
+  RangeDecoder decoder(stream);
+  NoGuide guide;
+  DenseWalk walk(decoder, guide, context);
+  const std::uint64_t start = decoder.position();
+  walk.run();
+  decoder.finish();
+  return result_of(walk, decoder.position() - start);
+}
+
+int mean_edge_exponent(const Chart& chart) {
+  std::uint64_t sum = 0, edges = 0;
+  for (const Triangle& face : chart.faces)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const LatticePoint from = chart.positions[face[c]], to = chart.positions[face[(c + 1) % 3]];
+      for (int a = 0; a < 3; ++a) sum += static_cast<std::uint64_t>(std::abs(from[a] - to[a]));
+      ++edges;
+    }
+  if (edges == 0 || sum < edges) return 0;
+  return std::min(31, static_cast<int>(std::bit_width(sum / edges)) - 1);
+}
+
+}  // namespace ramcdb::codec
