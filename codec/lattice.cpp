@@ -1,0 +1,28 @@
+#include <cmath>
+#include <string>
+
+#include "ramcdb/error.h"
+#include "ramcdb/geometry.h"
+
+namespace ramcdb {
+
+LatticePoint Lattice::snap(const Point& p) const {
+  LatticePoint i;
+  for (int a = 0; a < 3; ++a) {
+    const double offset = std::floor((p[a] - origin[a]) / step + 0.5);
+    if (!std::isfinite(p[a]))
+      throw Error(Errc::invalid_argument, "a coordinate is not a finite number", std::string(1, "xyz"[a]),
+                  "give finite coordinates");
+    if (!(offset >= -kMaxLatticeCoordinate && offset <= kMaxLatticeCoordinate))
+      throw Error(Errc::limit_exceeded, "a coordinate is too far away for the mesh's lattice",
+                  std::string(1, "xyz"[a]) + " = " + std::to_string(p[a]), "stay within 2^30 steps of its origin");
+    i[a] = static_cast<std::int32_t>(offset);
+  }
+  return i;
+}
+
+Point Lattice::position(LatticePoint i) const {
+  return {origin.x + i.x * step, origin.y + i.y * step, origin.z + i.z * step};
+}
+
+}  // namespace ramcdb
