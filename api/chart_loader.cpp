@@ -79,8 +79,7 @@ LoadedChart ChartLoader::decode(const Job& job) const {
   if (inner != job.entry.inner_vertices || loaded.chart.faces.size() != job.entry.faces)
     throw Error(Errc::corrupt, "the chart's counts are not those of its index page", place(at_, job.entry),
                 "run `ramcdb verify`");
-  for (std::uint32_t i = 0; i < inner; ++i)
-    loaded.keys.push_back({VertexKey::Where::chart, job.entry.id.value, i});
+  for (std::uint32_t i = 0; i < inner; ++i) loaded.keys.push_back({VertexKey::Where::chart, job.entry.id.value, i});
   return loaded;
 }
 

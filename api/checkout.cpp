@@ -57,8 +57,7 @@ struct EditedFile {
 
 const db::MeshRoot& root_named(const std::vector<db::MeshRoot>& roots, const std::string& name, VersionId version) {
   const auto it = std::find_if(roots.begin(), roots.end(), [&](const db::MeshRoot& r) { return r.name == name; });
-  if (it == roots.end())
-    throw Error(Errc::not_found, fmt::format("version {} has no mesh '{}'", version.value, name));
+  if (it == roots.end()) throw Error(Errc::not_found, fmt::format("version {} has no mesh '{}'", version.value, name));
   return *it;
 }
 
@@ -158,8 +157,8 @@ CommitReport commit_file(const std::shared_ptr<db::Store>& store, const std::fil
                          const CommitOptions& options) {
   const auto start = Clock::now();
   EditedFile edited = read_edited_file(store, file);
-  CommitReport report =
-      commit_moves(edited.parts, edited.change, edited.moves, options, attempt_name(edited.sidecar.nonce, options.branch, edited.moves));
+  CommitReport report = commit_moves(edited.parts, edited.change, edited.moves, options,
+                                     attempt_name(edited.sidecar.nonce, options.branch, edited.moves));
   if (report.conflicts.empty() && !report.nothing_changed) {
     move_sidecar_on(edited, file, report.revision);
   }

@@ -186,9 +186,8 @@ void compare_with_tip(ChangeReport& report, std::span<const RegionPart> parts, s
   report.base = base.version();
   report.tip = base.store().resolve(branch);
   report.changed_by_others = charts_other_than(parts, report.tip, {});
-  std::set_intersection(report.changed_by_others.begin(), report.changed_by_others.end(),
-                        report.charts_touched.begin(), report.charts_touched.end(),
-                        std::back_inserter(report.conflicts));
+  std::set_intersection(report.changed_by_others.begin(), report.changed_by_others.end(), report.charts_touched.begin(),
+                        report.charts_touched.end(), std::back_inserter(report.conflicts));
 }
 
 std::vector<ChartId> changed_by_others(std::span<const RegionPart> parts, VersionId version) {

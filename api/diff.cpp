@@ -59,7 +59,9 @@ class Displacements {
     return std::sqrt(sum);
   }
   [[nodiscard]] std::uint64_t count() const { return seen_.size(); }
-  [[nodiscard]] double rms() const { return seen_.empty() ? 0 : std::sqrt(squares_ / static_cast<double>(seen_.size())); }
+  [[nodiscard]] double rms() const {
+    return seen_.empty() ? 0 : std::sqrt(squares_ / static_cast<double>(seen_.size()));
+  }
 
  private:
   double step_;
@@ -94,8 +96,7 @@ void compare_charts(const LoadedChart& a, const LoadedChart& b, Displacements& s
   for (std::size_t v = 0; v < to.size(); ++v) {
     if (to[v] == a.chart.positions[v]) continue;
     change.vertices_moved += counted.insert(a.keys[v].packed()).second;
-    change.max_displacement =
-        std::max(change.max_displacement, sum.add(a.keys[v], a.chart.positions[v], to[v]));
+    change.max_displacement = std::max(change.max_displacement, sum.add(a.keys[v], a.chart.positions[v], to[v]));
   }
   report.max_displacement = std::max(report.max_displacement, change.max_displacement);
   report.per_chart.push_back(change);

@@ -101,8 +101,8 @@ RecodedChart recode_chart(const Snapshot::Impl& at, LoadedChart loaded, const Mo
   move_points(loaded.chart.positions, loaded.keys, moves);
   const MeshRecord& record = at.record();
   auto encoded = codec::encode_chart(loaded.chart, record.profile, at.tables(record.table), record.range);
-  RecodedChart recoded{loaded.entry, loaded.entry,          std::move(encoded.blob), loaded.cost,
-                       encoded.cost, encoded.expanded_range};
+  RecodedChart recoded{loaded.entry, loaded.entry, std::move(encoded.blob),
+                       loaded.cost,  encoded.cost, encoded.expanded_range};
   recoded.entry.table = record.table;
   recoded.entry.box = {};
   for (const LatticePoint p : loaded.chart.positions) recoded.entry.box.add(p);

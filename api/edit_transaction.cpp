@@ -37,7 +37,8 @@ void check_connectivity(const Patch& patch) {
     for (auto v = mesh.cfv_iter(face); !gone && v.is_valid() && i < 3; ++v)
       found[i++] = mesh.property(patch.region_property(), *v);
     const Triangle& expected = region.faces[static_cast<std::size_t>(face.idx())];
-    for (int turn = 0; turn < 3 && found != expected; ++turn) std::rotate(found.begin(), found.begin() + 1, found.end());
+    for (int turn = 0; turn < 3 && found != expected; ++turn)
+      std::rotate(found.begin(), found.begin() + 1, found.end());
     if (gone || i != 3 || found != expected) {
       const LatticePoint p = region.points[expected[0]];
       const Point q = patch.base().position(p);

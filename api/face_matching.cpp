@@ -149,7 +149,8 @@ class Matcher {
     from_shapes_ = sorted_shapes(from_);
     to_shapes_ = sorted_shapes(to_);
     for_equal(from_shapes_, to_shapes_, [&](std::size_t i, std::size_t i_end, std::size_t j, std::size_t j_end) {
-      const bool turns_clear = !(from_shapes_[i].p[0] == from_shapes_[i].p[1] && from_shapes_[i].p[1] == from_shapes_[i].p[2]);
+      const bool turns_clear =
+          !(from_shapes_[i].p[0] == from_shapes_[i].p[1] && from_shapes_[i].p[1] == from_shapes_[i].p[2]);
       if (i_end - i == 1 && j_end - j == 1 && turns_clear) match_shapes(from_shapes_[i], to_shapes_[j]);
     });
   }

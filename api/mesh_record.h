@@ -29,10 +29,10 @@ struct MeshRecord {
   std::uint64_t components = 0, boundary_loops = 0, nonmanifold_edges = 0, nonmanifold_vertices = 0;
   std::uint64_t isolated_vertices = 0, degenerate_faces = 0, duplicate_faces = 0, inconsistent_edges = 0;
 
-  codec::ChartCost chart_cost;      ///< of all charts, in 1/256 bit, without checksums
-  std::uint64_t page_bytes = 0;     ///< of all pages, checksums included
-  std::uint64_t wire_bytes = 0;     ///< of all wire blobs, checksums included
-  std::uint64_t table_bytes = 0;    ///< of all coder tables, checksums included
+  codec::ChartCost chart_cost;    ///< of all charts, in 1/256 bit, without checksums
+  std::uint64_t page_bytes = 0;   ///< of all pages, checksums included
+  std::uint64_t wire_bytes = 0;   ///< of all wire blobs, checksums included
+  std::uint64_t table_bytes = 0;  ///< of all coder tables, checksums included
 };
 
 /// As CBOR with short keys.

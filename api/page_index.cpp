@@ -12,7 +12,8 @@ namespace {
 
 template <class Item, class IdType>
 const Item* find_by_id(const std::vector<Item>& items, IdType id) {
-  const auto it = std::lower_bound(items.begin(), items.end(), id, [](const Item& item, IdType i) { return item.id < i; });
+  const auto it =
+      std::lower_bound(items.begin(), items.end(), id, [](const Item& item, IdType i) { return item.id < i; });
   return it != items.end() && it->id == id ? &*it : nullptr;
 }
 
@@ -53,8 +54,8 @@ const PageWire* find_wire(const LeafPage& leaf, WireId id) { return find_by_id(l
 const PageCorner* find_corner(const LeafPage& leaf, CornerId id) { return find_by_id(leaf.corners, id); }
 
 bool holds(std::span<const ChartRun> runs, ChartId chart) {
-  const auto after = std::upper_bound(runs.begin(), runs.end(), chart,
-                                      [](ChartId c, const ChartRun& run) { return c < run.first; });
+  const auto after =
+      std::upper_bound(runs.begin(), runs.end(), chart, [](ChartId c, const ChartRun& run) { return c < run.first; });
   return after != runs.begin() && chart.value - std::prev(after)->first.value < std::prev(after)->count;
 }
 

@@ -11,8 +11,8 @@
 
 namespace ramcdb::detail {
 
-/// Calls work(i) for i = 0 .. count - 1 on up to `threads` threads. `progress`, when given, gets the share that is done,
-/// on the calling thread. The first exception of any of them ends the rest and is thrown here.
+/// Calls work(i) for i = 0 .. count - 1 on up to `threads` threads. `progress`, when given, gets the share that is
+/// done, on the calling thread. The first exception of any of them ends the rest and is thrown here.
 inline void parallel_for(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& work,
                          const std::function<void(double)>& progress = {}) {
   std::atomic<std::size_t> next{0};

@@ -142,13 +142,17 @@ void add_shape(const Snapshot::Impl& at, const RegionShape& shape, ChartSet& fou
   } else if (const auto* near = std::get_if<NearestTo>(&shape)) {
     add_nearest(at, near->point, found, cost);
   } else if (const auto* box = std::get_if<InBox>(&shape)) {
-    add_where(at, [&](const ModelBox& b) { return meets(b, *box); }, found, cost);
+    add_where(
+        at, [&](const ModelBox& b) { return meets(b, *box); }, found, cost);
   } else if (const auto* sphere = std::get_if<InSphere>(&shape)) {
-    add_where(at, [&](const ModelBox& b) { return meets(b, *sphere); }, found, cost);
+    add_where(
+        at, [&](const ModelBox& b) { return meets(b, *sphere); }, found, cost);
   } else if (const auto* frustum = std::get_if<InFrustum>(&shape)) {
-    add_where(at, [&](const ModelBox& b) { return meets(b, *frustum); }, found, cost);
+    add_where(
+        at, [&](const ModelBox& b) { return meets(b, *frustum); }, found, cost);
   } else {
-    add_where(at, [](const ModelBox&) { return true; }, found, cost);
+    add_where(
+        at, [](const ModelBox&) { return true; }, found, cost);
   }
 }
 
@@ -186,14 +190,14 @@ ChartSet ring_of(const Snapshot::Impl& at, const ChartSet& found, ReadCost* cost
 
 std::set<ChartId> charts_at_corner(const Snapshot::Impl& at, CornerId corner, LatticePoint position, ReadCost* cost) {
   std::set<ChartId> charts;
-  at.pages().visit(
-      [&](const LatticeBox& box) { return box.contains(position); },
-      [&](const LeafRef& ref) {
-        if (!find_corner(*ref.leaf, corner)) return;
-        for (const PageChart& chart : ref.leaf->charts)
-          if (chart.box.contains(position) && has_corner(*ref.leaf, chart, corner)) charts.insert(chart.id);
-      },
-      cost);
+  at.pages().visit([&](const LatticeBox& box) { return box.contains(position); },
+                   [&](const LeafRef& ref) {
+                     if (!find_corner(*ref.leaf, corner)) return;
+                     for (const PageChart& chart : ref.leaf->charts)
+                       if (chart.box.contains(position) && has_corner(*ref.leaf, chart, corner))
+                         charts.insert(chart.id);
+                   },
+                   cost);
   return charts;
 }
 

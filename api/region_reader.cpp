@@ -22,7 +22,8 @@ struct FileMesh {
 FileMesh snap_file(const mesh_file::MeshData& data, const Lattice& lattice, const Point& origin) {
   FileMesh mesh;
   mesh.points.reserve(data.positions.size());
-  for (const Point& p : data.positions) mesh.points.push_back(lattice.snap({p.x + origin.x, p.y + origin.y, p.z + origin.z}));
+  for (const Point& p : data.positions)
+    mesh.points.push_back(lattice.snap({p.x + origin.x, p.y + origin.y, p.z + origin.z}));
   for (std::size_t c = 0; c + 2 < data.corners.size(); c += 3)
     mesh.faces.push_back({data.corners[c], data.corners[c + 1], data.corners[c + 2]});
   return mesh;

@@ -70,8 +70,8 @@ ChartSummary summary_of(const Snapshot::Impl& at, db::BlobReader& reader, const 
   summary.lo = at.record().lattice.position(chart.box.lo);
   summary.hi = at.record().lattice.position(chart.box.hi);
   summary.version = chart.version;
-  summary.bytes = reader.get({db::Kind::chart, at.root().mesh, chart.id.value, chart.version, 0}).size() +
-                  detail::kBlobOverhead;
+  summary.bytes =
+      reader.get({db::Kind::chart, at.root().mesh, chart.id.value, chart.version, 0}).size() + detail::kBlobOverhead;
   return summary;
 }
 

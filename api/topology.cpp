@@ -57,7 +57,8 @@ std::vector<Pass> sorted_passes(const std::vector<Triangle>& faces) {
 template <class Visit>
 void for_each_edge(const std::vector<Pass>& passes, Visit&& edge) {
   for (std::size_t begin = 0, end; begin < passes.size(); begin = end) {
-    for (end = begin; end < passes.size() && passes[end].low == passes[begin].low && passes[end].high == passes[begin].high;)
+    for (end = begin;
+         end < passes.size() && passes[end].low == passes[begin].low && passes[end].high == passes[begin].high;)
       ++end;
     edge(std::span(passes).subspan(begin, end - begin));
   }

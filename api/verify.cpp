@@ -16,11 +16,14 @@ namespace ramcdb::detail {
 namespace {
 
 std::string object_name(const db::BlobKey& key) {
-  static const std::map<db::Kind, const char*> names = {
-      {db::Kind::page, "page"},   {db::Kind::wire, "wire"},
-      {db::Kind::chart, "chart"}, {db::Kind::attribute, "attribute"},
-      {db::Kind::table, "table"}, {db::Kind::commit_record, "commit record"},
-      {db::Kind::pending, "pending list"}, {db::Kind::mesh_record, "mesh record"}};
+  static const std::map<db::Kind, const char*> names = {{db::Kind::page, "page"},
+                                                        {db::Kind::wire, "wire"},
+                                                        {db::Kind::chart, "chart"},
+                                                        {db::Kind::attribute, "attribute"},
+                                                        {db::Kind::table, "table"},
+                                                        {db::Kind::commit_record, "commit record"},
+                                                        {db::Kind::pending, "pending list"},
+                                                        {db::Kind::mesh_record, "mesh record"}};
   const auto it = names.find(key.kind);
   return fmt::format("{} {}", it == names.end() ? "blob" : it->second, key.id);
 }
@@ -118,8 +121,8 @@ class Verifier {
     for (std::size_t i = 0; i < fresh.size(); ++i) {
       ++report_.decoded_charts;
       if (!failures[i].empty())
-        report_.problems.push_back({"chart", at.root().name, fmt::format("chart {}", fresh[i]->id.value),
-                                    fresh[i]->version, failures[i]});
+        report_.problems.push_back(
+            {"chart", at.root().name, fmt::format("chart {}", fresh[i]->id.value), fresh[i]->version, failures[i]});
     }
   }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "codec/range_coder.h"
+#include "ramcdb/error.h"
 
 /// What the dense coder learns while it codes a chart: one adaptive bit per decision and context. Every chart starts
 /// from the same state, so that it opens alone.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string_view>
+
 #include "ramcdb/bytes.h"
 #include "ramcdb/wire_net.h"
 

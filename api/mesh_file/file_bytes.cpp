@@ -1,0 +1,150 @@
+#include "api/mesh_file/file_bytes.h"
+
+#include <fast_float/fast_float.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+
+namespace ramcdb::mesh_file {
+namespace {
+
+constexpr std::string_view kHowToGoOn = "repair or convert the file; nothing was imported";
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+
+}  // namespace
+
+FileBytes::FileBytes(const std::filesystem::path& file) : name_(file.string()) {
+  const int descriptor = ::open(name_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0)
+    throw Error(errno == ENOENT ? Errc::not_found : Errc::storage,
+                fmt::format("cannot open the file: {}", std::strerror(errno)), name_,
+                "check the path and its permissions");
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) {
+    ::close(descriptor);
+    throw Error(Errc::invalid_argument, "this is not a regular file", name_, "name a mesh file");
+  }
+  size_ = static_cast<std::size_t>(status.st_size);
+  void* mapped = size_ ? ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, descriptor, 0) : nullptr;
+  ::close(descriptor);
+  if (mapped == MAP_FAILED)
+    throw Error(Errc::storage, fmt::format("cannot read the file: {}", std::strerror(errno)), name_);
+  data_ = static_cast<const char*>(mapped);
+}
+
+FileBytes::~FileBytes() {
+  if (data_) ::munmap(const_cast<char*>(data_), size_);
+}
+
+Error bad_line(const FileBytes& file, std::size_t line, std::string_view what) {
+  return Error(Errc::invalid_argument, what, fmt::format("{}:{}", file.name(), line), kHowToGoOn);
+}
+
+Error bad_byte(const FileBytes& file, std::size_t offset, std::string_view what) {
+  return Error(Errc::invalid_argument, what, fmt::format("{}, byte {}", file.name(), offset), kHowToGoOn);
+}
+
+bool TextScanner::next_line(bool continued) {
+  const std::string_view text = file_.text();
+  if (at_ >= text.size()) return false;
+  joined_.clear();
+  while (true) {
+    const std::size_t end = std::min(text.find('\n', at_), text.size());
+    std::string_view piece = text.substr(at_, end - at_);
+    at_ = std::min(end + 1, text.size());
+    ++line_;
+    if (progress_ && line_ % 65536 == 0) progress_(static_cast<double>(at_) / static_cast<double>(text.size()));
+    while (!piece.empty() && is_blank(piece.back())) piece.remove_suffix(1);
+    const bool goes_on = continued && !piece.empty() && piece.back() == '\\' && at_ < text.size();
+    if (goes_on) piece.remove_suffix(1);
+    if (!goes_on && joined_.empty()) {
+      rest_ = piece;
+      return true;
+    }
+    joined_.append(piece).push_back(' ');
+    if (!goes_on) {
+      rest_ = joined_;
+      return true;
+    }
+  }
+}
+
+std::string_view TextScanner::word() {
+  std::size_t begin = 0;
+  while (begin < rest_.size() && is_blank(rest_[begin])) ++begin;
+  std::size_t end = begin;
+  while (end < rest_.size() && !is_blank(rest_[end])) ++end;
+  const std::string_view found = rest_.substr(begin, end - begin);
+  if (comment && !found.empty() && found.front() == comment) {
+    rest_ = {};
+    return {};
+  }
+  rest_.remove_prefix(end);
+  return found;
+}
+
+std::string_view TextScanner::word_anywhere() {
+  while (true) {
+    if (const std::string_view found = word(); !found.empty()) return found;
+    if (!next_line()) return {};
+  }
+}
+
+double TextScanner::parse_number(std::string_view text, std::string_view what) {
+  if (text.empty()) throw bad(fmt::format("{} is missing", what));
+  const char* begin = text.data() + (text.front() == '+' && text.size() > 1 ? 1 : 0);
+  double value = 0;
+  const auto [end, error] = fast_float::from_chars(begin, text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw bad(fmt::format("{} is no number: '{}'", what, text.substr(0, 40)));
+  if (!std::isfinite(value)) throw bad(fmt::format("{} is not finite: '{}'", what, text.substr(0, 40)));
+  if (!saw_doubles_ && text.size() > 9) {
+    std::size_t digits = 0;
+    for (const char c : text) {
+      if (c == 'e' || c == 'E') break;
+      digits += (c >= '1' && c <= '9') || (c == '0' && digits);
+    }
+    saw_doubles_ = digits > 9;
+  }
+  return value;
+}
+
+std::int64_t TextScanner::parse_integer(std::string_view text, std::string_view what) const {
+  if (text.empty()) throw bad(fmt::format("{} is missing", what));
+  const char* begin = text.data() + (text.front() == '+' && text.size() > 1 ? 1 : 0);
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw bad(fmt::format("{} is no whole number: '{}'", what, text.substr(0, 40)));
+  return value;
+}
+
+double TextScanner::number(std::string_view what) { return parse_number(word(), what); }
+double TextScanner::number_anywhere(std::string_view what) { return parse_number(word_anywhere(), what); }
+std::int64_t TextScanner::integer(std::string_view what) { return parse_integer(word(), what); }
+std::int64_t TextScanner::integer_anywhere(std::string_view what) { return parse_integer(word_anywhere(), what); }
+
+void DroppedCounter::add(std::string_view what, std::uint64_t count) {
+  for (auto& dropped : dropped_)
+    if (dropped.what == what) {
+      dropped.count += count;
+      return;
+    }
+  dropped_.push_back({std::string(what), count});
+}
+
+void DroppedCounter::hand_over(MeshData& mesh) {
+  for (auto& dropped : dropped_)
+    if (dropped.count) mesh.dropped.push_back(std::move(dropped));
+}
+
+}  // namespace ramcdb::mesh_file

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "api/mesh_file/mesh_file.h"
+#include "ramcdb/error.h"
+
+namespace ramcdb::mesh_file {
+
+using Progress = std::function<void(double)>;
+
+/// A file mapped for reading. It is read once, front to back.
+class FileBytes {
+ public:
+  explicit FileBytes(const std::filesystem::path& file);
+  ~FileBytes();
+  FileBytes(const FileBytes&) = delete;
+  FileBytes& operator=(const FileBytes&) = delete;
+
+  [[nodiscard]] std::string_view text() const { return {data_, size_}; }
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+ private:
+  std::string name_;
+  const char* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+/// The error of a file that cannot be taken: WHAT (FILE:LINE or FILE, byte N): HOW TO GO ON.
+[[nodiscard]] Error bad_line(const FileBytes& file, std::size_t line, std::string_view what);
+[[nodiscard]] Error bad_byte(const FileBytes& file, std::size_t offset, std::string_view what);
+
+/// One reader per format; `read_mesh` does the checks that all share.
+void read_ply(const FileBytes& file, MeshData& mesh, const Progress& progress);
+void read_obj(const FileBytes& file, MeshData& mesh, const Progress& progress);
+void read_off(const FileBytes& file, MeshData& mesh, const Progress& progress);
+void read_stl(const FileBytes& file, MeshData& mesh, const Progress& progress);
+
+/// Walks text line by line and word by word, without locale and without copying.
+class TextScanner {
+ public:
+  TextScanner(const FileBytes& file, std::size_t offset = 0, std::size_t lines_before = 0,
+              const Progress& progress = {})
+      : file_(file), at_(offset), line_(lines_before), progress_(progress) {}
+
+  /// Goes on to the next line; false at the end of the file. `continued`: a backslash at its end joins the next line.
+  bool next_line(bool continued = false);
+  /// The next word of the line; empty at its end.
+  std::string_view word();
+  /// The next word, on whatever line it stands; empty at the end of the file.
+  std::string_view word_anywhere();
+
+  /// The next word as a number. Throws with the place.
+  double number(std::string_view what);
+  double number_anywhere(std::string_view what);
+  std::int64_t integer(std::string_view what);
+  std::int64_t integer_anywhere(std::string_view what);
+
+  [[nodiscard]] std::size_t line() const { return line_; }
+  [[nodiscard]] std::size_t offset() const { return at_; }
+  [[nodiscard]] std::size_t left() const { return file_.text().size() - at_; }
+  /// Whether any number so far had more than nine digits.
+  [[nodiscard]] bool saw_doubles() const { return saw_doubles_; }
+  [[nodiscard]] Error bad(std::string_view what) const { return bad_line(file_, line_, what); }
+  /// Starts of comments, other than at the start of a line: everything behind it is skipped. 0: there are none.
+  char comment = 0;
+
+  double parse_number(std::string_view word, std::string_view what);
+  std::int64_t parse_integer(std::string_view word, std::string_view what) const;
+
+ private:
+  const FileBytes& file_;
+  std::size_t at_ = 0;
+  std::size_t line_ = 0;
+  std::string_view rest_;
+  std::string joined_;
+  bool saw_doubles_ = false;
+  Progress progress_;
+};
+
+/// Counts things by name, in the order in which they first came.
+class DroppedCounter {
+ public:
+  void add(std::string_view what, std::uint64_t count = 1);
+  void hand_over(MeshData& mesh);
+
+ private:
+  std::vector<MeshData::Dropped> dropped_;
+};
+
+}  // namespace ramcdb::mesh_file

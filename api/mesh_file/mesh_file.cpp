@@ -1,0 +1,71 @@
+#include "api/mesh_file/mesh_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "api/mesh_file/file_bytes.h"
+
+namespace ramcdb::mesh_file {
+namespace {
+
+constexpr std::size_t kMostVertices = 0xfffffffe;
+
+void check(const FileBytes& file, const MeshData& mesh) {
+  if (mesh.positions.empty())
+    throw Error(Errc::invalid_argument, "the file holds no vertex", file.name(), "check that it is the right file");
+  if (mesh.positions.size() > kMostVertices || mesh.face_count() > kMostVertices)
+    throw Error(Errc::limit_exceeded, "the file holds more than 2^32 - 2 vertices or faces", file.name(), "split it");
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+    for (int a = 0; a < 3; ++a)
+      if (!std::isfinite(mesh.positions[v][a]))
+        throw Error(Errc::invalid_argument, fmt::format("vertex {} has a coordinate that is not finite", v),
+                    file.name(), "repair the file; nothing was imported");
+  const auto wrong = std::find_if(mesh.corners.begin(), mesh.corners.end(),
+                                  [&](std::uint32_t v) { return v >= mesh.positions.size(); });
+  if (wrong != mesh.corners.end())
+    throw Error(Errc::invalid_argument,
+                fmt::format("a face names vertex {}, the file has {}", *wrong, mesh.positions.size()), file.name(),
+                "repair the file; nothing was imported");
+}
+
+}  // namespace
+
+Format format_of(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  for (char& c : extension)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  if (extension == ".ply") return Format::ply;
+  if (extension == ".obj") return Format::obj;
+  if (extension == ".off") return Format::off;
+  if (extension == ".stl") return Format::stl;
+  throw Error(Errc::invalid_argument, fmt::format("unknown mesh format '{}'", extension), file.string(),
+              "use .ply, .obj, .off or .stl");
+}
+
+MeshData read_mesh(const std::filesystem::path& path, const std::function<void(double)>& progress) {
+  const Format format = format_of(path);
+  const FileBytes file(path);
+  MeshData mesh;
+  switch (format) {
+    case Format::ply:
+      read_ply(file, mesh, progress);
+      break;
+    case Format::obj:
+      read_obj(file, mesh, progress);
+      break;
+    case Format::off:
+      read_off(file, mesh, progress);
+      break;
+    case Format::stl:
+      read_stl(file, mesh, progress);
+      break;
+  }
+  if (std::all_of(mesh.face_sizes.begin(), mesh.face_sizes.end(), [](std::uint32_t n) { return n == 3; }))
+    mesh.face_sizes.clear();
+  check(file, mesh);
+  return mesh;
+}
+
+}  // namespace ramcdb::mesh_file

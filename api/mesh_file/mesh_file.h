@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ramcdb/geometry.h"
+
+/// Ordinary mesh files, as they are: nothing is repaired, and what is not kept is named.
+namespace ramcdb::mesh_file {
+
+enum class Format { ply, obj, off, stl };
+
+/// From the extension, in any case. Throws invalid_argument listing the formats.
+[[nodiscard]] Format format_of(const std::filesystem::path& file);
+
+/// The number type of a file's coordinates. Text counts as float64 when a number has more than nine digits.
+enum class Scalar { float32, float64 };
+
+struct MeshData {
+  std::vector<Point> positions;
+  std::vector<std::uint32_t> corners;     ///< vertex indices, face after face
+  std::vector<std::uint32_t> face_sizes;  ///< corners per face; empty when all faces are triangles
+  Scalar scalar = Scalar::float32;
+  std::vector<std::uint64_t> vertex_ids;  ///< per vertex, from a file that write_mesh gave ids to; else empty
+  bool soup = false;                      ///< every face has vertices of its own (STL)
+
+  struct Dropped {
+    std::string what;         ///< such as "vertex property 'confidence' (float)"
+    std::uint64_t count = 0;  ///< how many values, faces or lines
+  };
+  std::vector<Dropped> dropped;  ///< what the file holds beside the above
+
+  [[nodiscard]] std::size_t face_count() const { return face_sizes.empty() ? corners.size() / 3 : face_sizes.size(); }
+};
+
+/// Reads a file whole. Bytes may be hostile: sizes are checked against the file before memory is taken. Throws
+/// not_found, and invalid_argument with the place for a file that is cut off, names vertices that do not exist, holds
+/// coordinates that are not finite, or no vertex at all.
+[[nodiscard]] MeshData read_mesh(const std::filesystem::path& file, const std::function<void(double)>& progress = {});
+
+/// Makes vertices at equal positions one (-0 equals 0); of their ids the first stays.
+void weld_exact(MeshData& mesh);
+
+/// Cuts faces with more than three corners into triangles, by ear clipping where they are not convex. Positions and
+/// vertices stay. Returns how many faces were cut.
+std::uint64_t triangulate(MeshData& mesh);
+
+struct FaceColor {
+  std::uint8_t r = 0, g = 0, b = 0;
+};
+
+/// A mesh to write; the spans must outlive the call.
+struct MeshOutput {
+  std::span<const Point> positions;
+  std::span<const Triangle> faces;
+  Scalar scalar = Scalar::float32;
+  std::span<const std::uint64_t> vertex_ids;  ///< PLY only; may be empty
+  std::span<const FaceColor> face_colors;     ///< PLY and OFF; may be empty
+};
+
+/// Writes beside the file and renames into place, so that a failure leaves what was there. Text numbers are the
+/// shortest that read back the same. STL is binary; PLY is binary little-endian unless `ascii`.
+/// Throws disk_full and storage.
+void write_mesh(const std::filesystem::path& file, Format format, const MeshOutput& mesh, bool ascii = false);
+
+}  // namespace ramcdb::mesh_file

@@ -1,0 +1,84 @@
+#include <fmt/format.h>
+
+#include "api/mesh_file/file_bytes.h"
+
+/// Wavefront OBJ: `v` and `f` lines. A corner is v, v/t, v//n or v/t/n, counted from 1, or from the newest backwards.
+namespace ramcdb::mesh_file {
+namespace {
+
+class ObjReader {
+ public:
+  ObjReader(const FileBytes& file, MeshData& mesh, const Progress& progress)
+      : scan_(file, 0, 0, progress), mesh_(mesh) {}
+
+  void run() {
+    while (scan_.next_line(true)) {
+      const std::string_view keyword = scan_.word();
+      if (keyword.empty() || keyword.front() == '#') continue;
+      if (keyword == "v")
+        read_vertex();
+      else if (keyword == "f")
+        read_face();
+      else
+        drop(keyword);
+    }
+    mesh_.scalar = scan_.saw_doubles() ? Scalar::float64 : Scalar::float32;
+    dropped_.hand_over(mesh_);
+  }
+
+ private:
+  void read_vertex() {
+    Point p;
+    for (int a = 0; a < 3; ++a) p[a] = scan_.number("a coordinate");
+    mesh_.positions.push_back(p);
+    std::size_t extra = 0;
+    while (!scan_.word().empty()) ++extra;
+    if (extra >= 3) dropped_.add("vertex colours");
+    if (extra == 1 || extra == 4) dropped_.add("vertex weights");
+  }
+
+  void read_face() {
+    std::uint32_t corners = 0;
+    for (std::string_view word; !(word = scan_.word()).empty(); ++corners) {
+      // What follows a slash points into vt and vn lines, which are dropped by name.
+      mesh_.corners.push_back(index(word.substr(0, word.find('/'))));
+    }
+    if (corners < 3) throw scan_.bad(fmt::format("a face has {} corners", corners));
+    mesh_.face_sizes.push_back(corners);
+  }
+
+  std::uint32_t index(std::string_view word) const {
+    const std::int64_t i = scan_.parse_integer(word, "a vertex index");
+    const auto count = static_cast<std::int64_t>(mesh_.positions.size());
+    const std::int64_t v = i < 0 ? count + i : i - 1;
+    // Vertices may follow their faces, so that a large index is judged at the end of the file; a relative one is not.
+    if (i == 0 || v < 0 || v > 0xfffffffd)
+      throw scan_.bad(fmt::format("vertex index {} does not exist ({} vertices so far)", i, count));
+    return static_cast<std::uint32_t>(v);
+  }
+
+  void drop(std::string_view keyword) {
+    if (keyword == "vn")
+      dropped_.add("normals (vn)");
+    else if (keyword == "vt")
+      dropped_.add("texture coordinates (vt)");
+    else if (keyword == "usemtl" || keyword == "mtllib")
+      dropped_.add(fmt::format("materials ({})", keyword));
+    else if (keyword == "g" || keyword == "o")
+      dropped_.add(fmt::format("groups ({})", keyword));
+    else
+      dropped_.add(fmt::format("'{}' lines", keyword.substr(0, 40)));
+  }
+
+  TextScanner scan_;
+  MeshData& mesh_;
+  DroppedCounter dropped_;
+};
+
+}  // namespace
+
+void read_obj(const FileBytes& file, MeshData& mesh, const Progress& progress) {
+  ObjReader(file, mesh, progress).run();
+}
+
+}  // namespace ramcdb::mesh_file

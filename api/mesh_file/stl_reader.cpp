@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstring>
+
+#include "api/mesh_file/file_bytes.h"
+
+/// STL, a soup of triangles. Binary: 80 bytes of anything, u32 count, then 50 bytes a triangle, little-endian: normal,
+/// three corners, u16 attribute. Which of the two kinds a file is, its length tells, not the word "solid".
+namespace ramcdb::mesh_file {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "byte order of STL and PLY readers");
+
+constexpr std::size_t kHeader = 84, kRecord = 50;
+
+template <class T>
+T load(const char* at) {
+  T value;
+  std::memcpy(&value, at, sizeof value);
+  return value;
+}
+
+void add_corner(MeshData& mesh, const Point& p) {
+  mesh.corners.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+  mesh.positions.push_back(p);
+}
+
+void read_binary(const FileBytes& file, MeshData& mesh, const Progress& progress) {
+  const std::string_view text = file.text();
+  const auto count = load<std::uint32_t>(text.data() + 80);
+  if (count > (text.size() - kHeader) / kRecord)
+    throw bad_byte(file, 80,
+                   fmt::format("the file is cut off: {} triangles announced, room for {}", count,
+                               (text.size() - kHeader) / kRecord));
+  mesh.positions.reserve(3 * std::size_t{count});
+  mesh.corners.reserve(3 * std::size_t{count});
+  std::uint64_t attributes = 0;
+  for (std::uint32_t f = 0; f < count; ++f) {
+    const char* at = text.data() + kHeader + kRecord * f;
+    for (int c = 0; c < 3; ++c) {
+      const char* p = at + 12 + 12 * c;
+      add_corner(mesh, {load<float>(p), load<float>(p + 4), load<float>(p + 8)});
+    }
+    attributes += load<std::uint16_t>(at + 48) != 0;
+    if (progress && f % 65536 == 0) progress(static_cast<double>(f) / count);
+  }
+  DroppedCounter dropped;
+  dropped.add("facet attributes", attributes);
+  dropped.hand_over(mesh);
+}
+
+void read_ascii(const FileBytes& file, MeshData& mesh, const Progress& progress) {
+  TextScanner scan(file, 0, 0, progress);
+  std::size_t corners = 0;
+  bool in_facet = false, any = false;
+  while (scan.next_line()) {
+    const std::string_view keyword = scan.word();
+    if (keyword == "facet") {
+      if (in_facet) throw scan.bad("a facet begins inside another");
+      in_facet = any = true;
+      corners = 0;
+    } else if (keyword == "vertex") {
+      if (!in_facet || ++corners > 3) throw scan.bad("a vertex that belongs to no triangle");
+      Point p;
+      for (int a = 0; a < 3; ++a) p[a] = scan.number("a coordinate");
+      add_corner(mesh, p);
+    } else if (keyword == "endfacet") {
+      if (!in_facet || corners != 3) throw scan.bad(fmt::format("a facet has {} vertices", corners));
+      in_facet = false;
+    } else if (!keyword.empty() && keyword != "solid" && keyword != "endsolid" && keyword != "outer" &&
+               keyword != "endloop") {
+      throw scan.bad(fmt::format("'{}' is not STL", keyword.substr(0, 40)));
+    }
+  }
+  if (in_facet) throw scan.bad("the file is cut off inside a facet");
+  if (!any) throw scan.bad("the file holds no facet");
+}
+
+}  // namespace
+
+void read_stl(const FileBytes& file, MeshData& mesh, const Progress& progress) {
+  const std::string_view text = file.text();
+  const bool begins_solid = text.substr(0, 5) == "solid";
+  const bool fits_binary =
+      text.size() >= kHeader && kHeader + kRecord * std::uint64_t{load<std::uint32_t>(text.data() + 80)} == text.size();
+  if (!fits_binary && !begins_solid && text.size() < kHeader)
+    throw bad_byte(file, text.size(), "the file is too short for STL");
+  if (fits_binary || !begins_solid)
+    read_binary(file, mesh, progress);
+  else
+    read_ascii(file, mesh, progress);
+  mesh.soup = true;
+}
+
+}  // namespace ramcdb::mesh_file

@@ -1,0 +1,97 @@
+#include <span>
+
+#include "api/mesh_file/mesh_file.h"
+
+namespace ramcdb::mesh_file {
+namespace {
+
+Point operator-(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Point cross(const Point& a, const Point& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+/// Cuts one polygon into triangles: repeatedly the first corner that turns left and has no other corner inside its
+/// ear. Where no ear is left (a polygon that crosses itself, or without area) the first corner goes.
+class EarClipper {
+ public:
+  EarClipper(const std::vector<Point>& positions, std::span<const std::uint32_t> polygon)
+      : positions_(positions), left_(polygon.begin(), polygon.end()) {
+    for (std::size_t i = 0; i < left_.size(); ++i) {
+      const Point n = cross(at(i) - at(0), at(i + 1) - at(0));
+      normal_ = {normal_.x + n.x, normal_.y + n.y, normal_.z + n.z};
+    }
+  }
+
+  void clip(std::vector<std::uint32_t>& corners) {
+    // Looking for ears takes quadratic time and more: no real polygon is that large, a hostile one becomes a fan.
+    constexpr std::size_t kMostCorners = 4096;
+    if (left_.size() > kMostCorners) return fan(corners);
+    std::size_t from = 0;
+    while (left_.size() > 3) {
+      const std::size_t ear = find_ear(from);
+      cut(ear, corners);
+      from = ear ? ear - 1 : 0;
+    }
+    corners.insert(corners.end(), left_.begin(), left_.end());
+  }
+
+ private:
+  const Point& at(std::size_t i) const { return positions_[left_[i % left_.size()]]; }
+
+  std::size_t find_ear(std::size_t from) const {
+    const std::size_t n = left_.size();
+    for (std::size_t k = 0; k < n; ++k)
+      if (is_ear((from + k) % n)) return (from + k) % n;
+    return from % n;
+  }
+
+  /// Whether corner i with its two neighbours is a triangle that nothing else of the polygon lies in.
+  bool is_ear(std::size_t i) const {
+    const std::size_t n = left_.size();
+    const Point &a = at(i + n - 1), &b = at(i), &c = at(i + 1);
+    if (dot(cross(b - a, c - b), normal_) <= 0) return false;
+    for (std::size_t j = i + 2; j < i + n - 1; ++j) {
+      const Point& p = at(j);
+      if (p == a || p == b || p == c) continue;
+      if (dot(cross(b - a, p - a), normal_) >= 0 && dot(cross(c - b, p - b), normal_) >= 0 &&
+          dot(cross(a - c, p - c), normal_) >= 0)
+        return false;
+    }
+    return true;
+  }
+
+  void fan(std::vector<std::uint32_t>& corners) const {
+    for (std::size_t i = 2; i < left_.size(); ++i) corners.insert(corners.end(), {left_[0], left_[i - 1], left_[i]});
+  }
+
+  void cut(std::size_t ear, std::vector<std::uint32_t>& corners) {
+    const std::size_t n = left_.size();
+    corners.insert(corners.end(), {left_[(ear + n - 1) % n], left_[ear], left_[(ear + 1) % n]});
+    left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(ear));
+  }
+
+  const std::vector<Point>& positions_;
+  std::vector<std::uint32_t> left_;
+  Point normal_;
+};
+
+}  // namespace
+
+std::uint64_t triangulate(MeshData& mesh) {
+  if (mesh.face_sizes.empty()) return 0;
+  std::uint64_t cut = 0;
+  std::vector<std::uint32_t> corners;
+  corners.reserve(mesh.corners.size());
+  std::size_t begin = 0;
+  for (const std::uint32_t size : mesh.face_sizes) {
+    EarClipper(mesh.positions, std::span(mesh.corners).subspan(begin, size)).clip(corners);
+    cut += size > 3;
+    begin += size;
+  }
+  mesh.corners = std::move(corners);
+  mesh.face_sizes.clear();
+  return cut;
+}
+
+}  // namespace ramcdb::mesh_file

@@ -1,0 +1,334 @@
+#include "ramcdb/edit_transaction.h"
+
+#include <random>
+#include <set>
+
+#include "db/store.h"
+#include "tests/api/temp_repository.h"
+
+namespace ramcdb::test {
+namespace {
+
+CommitOptions message(const char* text) {
+  CommitOptions options;
+  options.message = text;
+  options.author = "test";
+  return options;
+}
+
+Region charts(std::initializer_list<std::uint32_t> ids) {
+  OfCharts shape;
+  for (const std::uint32_t id : ids) shape.charts.emplace_back(id);
+  return {{shape}, 0};
+}
+
+/// Key -> point of a whole mesh, with inner vertices told apart by nothing but their place in the sorted list.
+std::map<VertexKey, LatticePoint> by_key(const RegionMesh& mesh) {
+  std::map<VertexKey, LatticePoint> points;
+  for (std::size_t v = 0; v < mesh.keys.size(); ++v) points.emplace(mesh.keys[v], mesh.points[v]);
+  return points;
+}
+
+/// Patch vertices whose key is of a kind.
+std::vector<Patch::Mesh::VertexHandle> vertices_of_kind(const Patch& patch, VertexKey::Where where) {
+  std::vector<Patch::Mesh::VertexHandle> found;
+  for (const auto v : patch.mesh().all_vertices())
+    if (VertexKey::unpack(patch.mesh().property(patch.key_property(), v)).where == where) found.push_back(v);
+  return found;
+}
+
+void move(Patch& patch, Patch::Mesh::VertexHandle v, double x, double y, double z) {
+  const double step = patch.base().lattice().step;
+  patch.mesh().set_point(v, patch.mesh().point(v) + Patch::Mesh::Point(x * step, y * step, z * step));
+}
+
+/// The triangles that an edit should lead to: those before, with the patch's points.
+TriangleSet expected_after(const Snapshot& before, const std::map<VertexKey, LatticePoint>& moved) {
+  RegionMesh mesh = whole(before);
+  for (std::size_t v = 0; v < mesh.keys.size(); ++v)
+    if (const auto it = moved.find(mesh.keys[v]); it != moved.end()) mesh.points[v] = it->second;
+  return triangle_set(mesh);
+}
+
+std::map<VertexKey, LatticePoint> points_of(const Patch& patch) {
+  std::map<VertexKey, LatticePoint> points;
+  for (const auto v : patch.mesh().all_vertices()) {
+    const auto p = patch.mesh().point(v);
+    points[VertexKey::unpack(patch.mesh().property(patch.key_property(), v))] =
+        patch.base().lattice().snap({p[0], p[1], p[2]});
+  }
+  return points;
+}
+
+TEST(Patch, HoldsTheRegionAsAnOpenMeshMesh) {
+  for (const TestMesh& mesh : {sphere(3000), genus3(4000), terrain(40, 40), boxes(30), scan(5000)}) {
+    TempRepository repository(mesh);
+    auto edit = repository->begin_edit();
+    const Patch& patch = edit.checkout({{WholeMesh{}}, 0});
+    EXPECT_EQ(patch.copies(), 0U);
+    EXPECT_EQ(patch.mesh().n_vertices(), mesh.positions.size());
+    EXPECT_EQ(patch.mesh().n_faces(), mesh.faces.size());
+    for (const auto v : patch.mesh().all_vertices()) EXPECT_FALSE(patch.on_outer_border(v));
+  }
+}
+
+TEST(Patch, HoldsNonManifoldRegionsWithCopiesOfOneKey) {
+  for (const TestMesh& mesh :
+       {hourglass(), two_cubes_sharing_edge(), three_faces_one_edge(), moebius(), degenerate_and_duplicate_faces()}) {
+    TempRepository repository(mesh);
+    auto edit = repository->begin_edit();
+    const Patch& patch = edit.checkout({{WholeMesh{}}, 0});
+    EXPECT_EQ(patch.mesh().n_faces(), mesh.faces.size());
+    EXPECT_EQ(patch.mesh().n_vertices(), mesh.positions.size() + patch.copies());
+    EXPECT_TRUE(edit.status().clean());
+  }
+}
+
+TEST(Commit, OfAnUneditedRegionWritesNothing) {
+  TempRepository repository(scan(6000));
+  const auto usage = repository->snapshot().info().bytes.store;
+  auto edit = repository->begin_edit();
+  (void)edit.checkout(charts({1, 2, 3}));
+  EXPECT_TRUE(edit.status().clean());
+  const CommitReport report = edit.commit(message("nothing"));
+  EXPECT_TRUE(report.nothing_changed);
+  EXPECT_EQ(report.bytes_written, 0U);
+  EXPECT_EQ(report.revision, VersionId(1));
+  EXPECT_EQ(repository->resolve("HEAD"), VersionId(1));
+  EXPECT_EQ(repository->snapshot().info().bytes.store, usage);
+}
+
+TEST(Commit, OfMovesOfEveryKindChangesJustThem) {
+  for (const auto where : {VertexKey::Where::chart, VertexKey::Where::wire, VertexKey::Where::corner}) {
+    SCOPED_TRACE(static_cast<int>(where));
+    TempRepository repository(scan(6000), 400);
+    auto edit = repository->begin_edit();
+    const Snapshot before = edit.base();
+    Patch& patch = edit.checkout(charts({4, 5}));
+    const auto candidates = vertices_of_kind(patch, where);
+    ASSERT_FALSE(candidates.empty());
+    move(patch, candidates[candidates.size() / 2], 3, -2, 5);
+    const TriangleSet expected = expected_after(before, points_of(patch));
+    const ChangeReport status = edit.status();
+    EXPECT_EQ(status.vertices_moved, 1U);
+    EXPECT_NEAR(status.max_displacement, std::sqrt(38.0) * before.lattice().step, 1e-12);
+    const CommitReport report = edit.commit(message("move"));
+    EXPECT_EQ(report.vertices_moved, 1U);
+    EXPECT_EQ(report.revision, VersionId(2));
+    EXPECT_GT(report.bytes_written, 0U);
+    const Snapshot after = repository->snapshot();
+    EXPECT_EQ(triangle_set(whole(after)), expected);
+    EXPECT_EQ(triangle_set(whole(repository->snapshot("mesh", "v1"))), triangle_set(whole(before))) << "history stays";
+    const DiffReport diff = repository->diff(before, after);
+    EXPECT_EQ(diff.vertices_moved, 1U);
+    EXPECT_EQ(diff.changed.size(), report.charts_reencoded);
+    EXPECT_NEAR(diff.max_displacement, status.max_displacement, 1e-12);
+    EXPECT_TRUE(repository->verify({}).ok());
+  }
+}
+
+TEST(Commit, OfTheRegionsOwnBorderTakesTheNeighboursAlong) {
+  TempRepository repository(scan(6000), 400);
+  auto edit = repository->begin_edit();
+  const Snapshot before = edit.base();
+  Patch& patch = edit.checkout(charts({6}));
+  std::uint64_t moved = 0;
+  for (const auto v : patch.mesh().all_vertices())
+    if (patch.on_outer_border(v)) {
+      move(patch, v, 1, 1, 1);
+      ++moved;
+    }
+  ASSERT_GT(moved, 10U);
+  const TriangleSet expected = expected_after(before, points_of(patch));
+  EXPECT_EQ(edit.status().border_vertices_moved, moved);
+  const CommitReport report = edit.commit(message("border"));
+  EXPECT_EQ(report.charts_touched, 1U);
+  EXPECT_GT(report.charts_reencoded, 3U);
+  EXPECT_EQ(triangle_set(whole(repository->snapshot())), expected);
+  EXPECT_TRUE(repository->verify({}).ok());
+}
+
+TEST(Commit, OfMovesAtNonManifoldPlacesMovesAllCharts) {
+  for (const TestMesh& mesh : {hourglass(), two_cubes_sharing_edge(), three_faces_one_edge()}) {
+    TempRepository repository(mesh, 4);
+    auto edit = repository->begin_edit();
+    const Snapshot before = edit.base();
+    Patch& patch = edit.checkout({{WholeMesh{}}, 0});
+    std::map<std::uint64_t, int> uses;
+    for (const auto v : patch.mesh().all_vertices()) ++uses[patch.mesh().property(patch.key_property(), v)];
+    for (const auto v : patch.mesh().all_vertices())
+      if (uses[patch.mesh().property(patch.key_property(), v)] > 1) move(patch, v, 2, 2, 2);
+    const TriangleSet expected = expected_after(before, points_of(patch));
+    (void)edit.commit(message("tip"));
+    EXPECT_EQ(triangle_set(whole(repository->snapshot())), expected);
+  }
+}
+
+TEST(Commit, RefusesCopiesThatMovedApart) {
+  TempRepository repository(hourglass(), 4);
+  auto edit = repository->begin_edit();
+  Patch& patch = edit.checkout({{WholeMesh{}}, 0});
+  std::set<std::uint64_t> seen;
+  for (const auto v : patch.mesh().all_vertices())
+    if (!seen.insert(patch.mesh().property(patch.key_property(), v)).second) move(patch, v, 9, 0, 0);
+  EXPECT_THROW((void)edit.commit(message("torn")), Error);
+  EXPECT_EQ(repository->resolve("HEAD"), VersionId(1));
+}
+
+TEST(Commit, FarOutsideTheFirstBoxExpandsTheRange) {
+  TempRepository repository(sphere(3000));
+  auto edit = repository->begin_edit();
+  const Snapshot before = edit.base();
+  Patch& patch = edit.checkout(charts({2}));
+  const auto inner = vertices_of_kind(patch, VertexKey::Where::chart);
+  move(patch, inner.front(), 1e7, -3e6, 5e5);
+  const TriangleSet expected = expected_after(before, points_of(patch));
+  const CommitReport report = edit.commit(message("far"));
+  EXPECT_EQ(report.ranges_expanded, 1U);
+  EXPECT_EQ(triangle_set(whole(repository->snapshot())), expected);
+  EXPECT_EQ(repository->snapshot().lattice(), before.lattice()) << "the step and so the error bound stay";
+  auto back = repository->begin_edit();
+  Patch& again = back.checkout(charts({2}));
+  for (const auto v : again.mesh().all_vertices()) {
+    const auto p = again.mesh().point(v);
+    if (p[0] > 100) move(again, v, -1e7, 3e6, -5e5);
+  }
+  (void)back.commit(message("back"));
+  EXPECT_EQ(triangle_set(whole(repository->snapshot())), triangle_set(whole(before)));
+}
+
+TEST(Commit, BeyondTheLatticeIsRefused) {
+  TempRepository repository(sphere(1000));
+  auto edit = repository->begin_edit();
+  Patch& patch = edit.checkout({{WholeMesh{}}, 0});
+  move(patch, Patch::Mesh::VertexHandle(0), 3e9, 0, 0);
+  EXPECT_THROW((void)edit.commit(message("too far")), Error);
+  patch.mesh().set_point(Patch::Mesh::VertexHandle(0), {std::numeric_limits<double>::quiet_NaN(), 0, 0});
+  EXPECT_THROW((void)edit.commit(message("nan")), Error);
+  EXPECT_EQ(repository->resolve("HEAD"), VersionId(1));
+}
+
+TEST(Commit, RefusesChangedConnectivity) {
+  TempRepository repository(sphere(1000));
+  auto edit = repository->begin_edit();
+  Patch& patch = edit.checkout({{WholeMesh{}}, 0});
+  patch.mesh().request_face_status();
+  patch.mesh().request_edge_status();
+  patch.mesh().request_vertex_status();
+  patch.mesh().delete_face(Patch::Mesh::FaceHandle(3), false);
+  EXPECT_THROW((void)edit.commit(message("hole")), Error);
+}
+
+TEST(Commit, AHundredRoundsOfMovesAndMovesBackEndWhereTheyBegan) {
+  TempRepository repository(terrain(40, 40), 300);
+  const TriangleSet start = triangle_set(whole(repository->snapshot()));
+  std::mt19937 random(11);
+  for (int round = 0; round < 50; ++round) {
+    const auto chart = ChartId(1 + static_cast<std::uint32_t>(random() % repository->snapshot().info().charts));
+    std::map<std::uint64_t, Patch::Mesh::Point> before;
+    for (const bool back : {false, true}) {
+      auto edit = repository->begin_edit();
+      Patch& patch = edit.checkout({{OfCharts{{chart}}}, 0});
+      // The chart's vertices by position: moving one renumbers the inner ones.
+      std::vector<Patch::Mesh::VertexHandle> order(patch.mesh().n_vertices());
+      for (std::size_t i = 0; i < order.size(); ++i) order[i] = Patch::Mesh::VertexHandle(static_cast<int>(i));
+      std::sort(order.begin(), order.end(), [&](auto a, auto b) {
+        const auto p = patch.mesh().point(a), q = patch.mesh().point(b);
+        return std::tie(p[0], p[1]) < std::tie(q[0], q[1]);
+      });
+      // A terrain's x and y name its vertices; only heights move.
+      for (std::size_t i = static_cast<std::size_t>(round % 7); i < order.size(); i += 7)
+        move(patch, order[i], 0, 0, back ? -37 : 37);
+      (void)edit.commit(message(back ? "back" : "there"));
+    }
+  }
+  EXPECT_EQ(repository->resolve("HEAD"), VersionId(101));
+  EXPECT_EQ(triangle_set(whole(repository->snapshot())), start);
+  EXPECT_TRUE(repository->verify({}).ok());
+}
+
+TEST(Commit, OfDisjointChartsGoesInBesideOthers) {
+  TempRepository repository(scan(8000), 300);
+  auto mine = repository->begin_edit();
+  auto theirs = repository->begin_edit();
+  Patch& a = mine.checkout(charts({1}));
+  Patch& b = theirs.checkout(charts({20}));
+  move(a, vertices_of_kind(a, VertexKey::Where::chart).front(), 0, 0, 4);
+  move(b, vertices_of_kind(b, VertexKey::Where::chart).front(), 0, 0, 4);
+  auto both = points_of(a);
+  for (const auto& [key, point] : points_of(b)) both[key] = point;
+  const TriangleSet expected = expected_after(mine.base(), both);
+  EXPECT_EQ(theirs.commit(message("theirs")).revision, VersionId(2));
+  const CommitReport report = mine.commit(message("mine"));
+  EXPECT_TRUE(report.conflicts.empty());
+  EXPECT_EQ(report.revision, VersionId(3));
+  EXPECT_EQ(report.parent, VersionId(2));
+  EXPECT_EQ(triangle_set(whole(repository->snapshot())), expected);
+}
+
+TEST(Commit, OfTheSameChartIsAConflictAndWritesNothing) {
+  TempRepository repository(scan(8000), 300);
+  auto mine = repository->begin_edit();
+  auto theirs = repository->begin_edit();
+  Patch& a = mine.checkout(charts({7}));
+  Patch& b = theirs.checkout(charts({7}));
+  move(a, vertices_of_kind(a, VertexKey::Where::chart).front(), 0, 0, 4);
+  move(b, vertices_of_kind(b, VertexKey::Where::chart).back(), 0, 0, 4);
+  (void)theirs.commit(message("theirs"));
+  EXPECT_EQ(mine.status().conflicts, std::vector<ChartId>{ChartId(7)});
+  const CommitReport report = mine.commit(message("mine"));
+  EXPECT_EQ(report.conflicts, std::vector<ChartId>{ChartId(7)});
+  EXPECT_EQ(repository->resolve("HEAD"), VersionId(2));
+}
+
+TEST(Commit, OfASharedBorderConflictsEvenWhenRegionsDiffer) {
+  TempRepository repository(scan(8000), 300);
+  auto mine = repository->begin_edit();
+  auto theirs = repository->begin_edit();
+  Patch& a = mine.checkout(charts({7}));
+  const auto neighbour = repository->snapshot().describe({ChartId(7)}).front().neighbours.front();
+  Patch& b = theirs.checkout({{OfCharts{{neighbour}}}, 0});
+  std::set<std::uint64_t> keys_of_b;
+  for (const auto v : b.mesh().all_vertices()) keys_of_b.insert(b.mesh().property(b.key_property(), v));
+  for (const auto v : a.mesh().all_vertices())
+    if (keys_of_b.contains(a.mesh().property(a.key_property(), v))) move(a, v, 1, 0, 0);
+  move(b, vertices_of_kind(b, VertexKey::Where::chart).front(), 0, 0, 4);
+  (void)theirs.commit(message("theirs"));
+  EXPECT_EQ(mine.commit(message("mine")).conflicts, std::vector<ChartId>{neighbour});
+}
+
+TEST(Commit, AbortedOrForgottenLeavesNothing) {
+  TempRepository repository(sphere(2000));
+  {
+    auto edit = repository->begin_edit();
+    Patch& patch = edit.checkout(charts({1}));
+    move(patch, Patch::Mesh::VertexHandle(0), 5, 5, 5);
+  }
+  EXPECT_EQ(repository->resolve("HEAD"), VersionId(1));
+  auto edit = repository->begin_edit();
+  (void)edit.checkout(charts({1}));
+  EXPECT_THROW((void)edit.checkout(charts({1, 2})), Error) << "patches may not overlap";
+  edit.abort();
+  EXPECT_THROW((void)edit.commit(message("over")), Error);
+}
+
+TEST(Commit, KeepsTheFiguresOfInfoTrue) {
+  TempRepository repository(scan(6000), 300);
+  auto edit = repository->begin_edit();
+  Patch& patch = edit.checkout(charts({3, 4, 5}));
+  int n = 0;
+  for (const auto v : patch.mesh().all_vertices()) move(patch, v, ++n % 5, n % 3, -(n % 4));
+  (void)edit.commit(message("wobble"));
+  // The running totals must be those of the blobs that the version really has.
+  const Snapshot snapshot = repository->snapshot();
+  const MeshInfo info = snapshot.info();
+  std::uint64_t charts_bytes = 0;
+  for (const ChartSummary& c : snapshot.describe(snapshot.find({{WholeMesh{}}, 0}))) charts_bytes += c.bytes;
+  EXPECT_EQ(info.bytes.connectivity + info.bytes.geometry + info.bytes.chart_headers, charts_bytes);
+  ReadCost cost;
+  (void)repository->snapshot().read(snapshot.find({{WholeMesh{}}, 0}), 1, &cost);
+  EXPECT_EQ(cost.bytes, charts_bytes + info.bytes.wires + info.bytes.wire_net);
+}
+
+}  // namespace
+}  // namespace ramcdb::test

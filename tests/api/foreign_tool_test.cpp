@@ -1,0 +1,267 @@
+#include <algorithm>
+#include <fstream>
+#include <numeric>
+#include <random>
+
+#include "tests/api/temp_repository.h"
+
+/// Checked-out files that other programs rewrote.
+namespace ramcdb::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct FileMesh {
+  std::vector<Point> positions;
+  std::vector<Triangle> faces;
+};
+
+FileMesh read(const fs::path& file) {
+  mesh_file::MeshData data = mesh_file::read_mesh(file);
+  mesh_file::triangulate(data);
+  FileMesh mesh{data.positions, {}};
+  for (std::size_t c = 0; c + 2 < data.corners.size(); c += 3)
+    mesh.faces.push_back({data.corners[c], data.corners[c + 1], data.corners[c + 2]});
+  return mesh;
+}
+
+void write(const FileMesh& mesh, const fs::path& file) {
+  mesh_file::MeshOutput out;
+  out.positions = mesh.positions;
+  out.faces = mesh.faces;
+  out.scalar = mesh_file::Scalar::float64;
+  mesh_file::write_mesh(file, mesh_file::format_of(file), out);
+}
+
+FileMesh renumbered(const FileMesh& mesh, unsigned seed) {
+  const TestMesh shuffled_mesh = shuffled({mesh.positions, mesh.faces}, seed);
+  return {shuffled_mesh.positions, shuffled_mesh.faces};
+}
+
+/// Every face with three vertices of its own.
+FileMesh soup(const FileMesh& mesh) {
+  FileMesh out;
+  for (const Triangle& t : mesh.faces) {
+    Triangle own;
+    for (std::size_t i = 0; i < 3; ++i) {
+      own[i] = static_cast<std::uint32_t>(out.positions.size());
+      out.positions.push_back(mesh.positions[t[i]]);
+    }
+    out.faces.push_back(own);
+  }
+  return out;
+}
+
+CommitOptions message(const char* text) {
+  CommitOptions options;
+  options.message = text;
+  return options;
+}
+
+class ForeignTool : public ::testing::Test {
+ protected:
+  void check_out(const char* name, std::initializer_list<std::uint32_t> ids) {
+    file_ = repository_ / name;
+    std::vector<ChartId> charts;
+    for (const std::uint32_t id : ids) charts.emplace_back(id);
+    (void)repository_->checkout_file(repository_->snapshot(), charts, file_, {});
+  }
+
+  /// A tool hands the file over to another name: the sidecar goes along.
+  void hand_over(const fs::path& to) {
+    fs::rename(file_.string() + ".ramcdb.json", to.string() + ".ramcdb.json");
+    file_ = to;
+  }
+
+  /// Commits, and expects the mesh to be what the file says it is.
+  CommitReport commit_and_check(const FileMesh& edited, std::uint64_t moved) {
+    const Snapshot before = repository_->snapshot();
+    TriangleSet expected = triangle_set(whole(before));
+    for (const auto& t : original_) expected.erase(std::find(expected.begin(), expected.end(), t));
+    const TriangleSet now = triangle_set(snapped(before.lattice(), edited.positions), edited.faces);
+    expected.insert(expected.end(), now.begin(), now.end());
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(repository_->status_file(file_).vertices_moved, moved);
+    const CommitReport report = repository_->commit_file(file_, message("foreign"));
+    EXPECT_EQ(report.vertices_moved, moved);
+    EXPECT_EQ(triangle_set(whole(repository_->snapshot())), expected);
+    return report;
+  }
+
+  void remember(const FileMesh& mesh) {
+    original_ = triangle_set(snapped(repository_->snapshot().lattice(), mesh.positions), mesh.faces);
+  }
+
+  TempRepository repository_{scan(8000), 400};
+  fs::path file_;
+  TriangleSet original_;
+};
+
+TEST_F(ForeignTool, UneditedInAnyOrderAndFormatIsUnchanged) {
+  check_out("region.ply", {3, 4, 9});
+  const FileMesh mesh = read(file_);
+  for (const char* name : {"again.ply", "again.obj", "again.off", "again.stl"}) {
+    fs::copy_file(file_.string() + ".ramcdb.json", (repository_ / name).string() + ".ramcdb.json");
+    write(renumbered(mesh, 5), repository_ / name);
+    EXPECT_TRUE(repository_->status_file(repository_ / name).clean()) << name;
+    EXPECT_TRUE(repository_->commit_file(repository_ / name, message("same")).nothing_changed) << name;
+  }
+  write(soup(mesh), repository_ / "again.obj");
+  EXPECT_TRUE(repository_->status_file(repository_ / "again.obj").clean()) << "split vertices";
+  EXPECT_EQ(repository_->resolve("HEAD"), VersionId(1));
+}
+
+TEST_F(ForeignTool, MovedAndKeptInOrder) {
+  check_out("region.ply", {3, 4});
+  FileMesh mesh = read(file_);
+  remember(mesh);
+  const double step = repository_->snapshot().lattice().step;
+  for (Point& p : mesh.positions) p.x += 7 * step;
+  write(mesh, file_);
+  (void)commit_and_check(mesh, mesh.positions.size());
+}
+
+TEST_F(ForeignTool, MovedReorderedAndWrittenInAnotherFormat) {
+  const double step = repository_->snapshot().lattice().step;
+  int round = 0;
+  for (const char* name : {"out.obj", "out.off", "out.stl", "out.ply"}) {
+    check_out("region.ply", {3, 4});
+    FileMesh mesh = read(file_);
+    remember(mesh);
+    std::uint64_t moved = 0;
+    for (std::size_t v = 0; v < mesh.positions.size(); v += 3, ++moved) {
+      mesh.positions[v].y += (5 + round) * step;
+      mesh.positions[v].z -= static_cast<double>(v % 11) * step;
+    }
+    hand_over(repository_ / name);
+    write(renumbered(mesh, 17), file_);
+    const CommitReport report = commit_and_check(mesh, moved);
+    EXPECT_EQ(report.revision, VersionId(static_cast<std::uint32_t>(2 + round))) << name;
+    ++round;
+  }
+}
+
+TEST_F(ForeignTool, SmoothedInsideAndReorderedIsRecognizedByItsBorder) {
+  check_out("region.ply", {3, 4});
+  const Snapshot snapshot = repository_->snapshot();
+  const RegionMesh region = snapshot.read({ChartId(3), ChartId(4)});
+  FileMesh mesh = read(file_);
+  remember(mesh);
+  std::uint64_t moved = 0;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+    if (!region.outer_border[v]) {
+      mesh.positions[v].z += 3 * snapshot.lattice().step;
+      ++moved;
+    }
+  hand_over(repository_ / "smooth.obj");
+  write(renumbered(mesh, 3), file_);
+  (void)commit_and_check(mesh, moved);
+}
+
+TEST_F(ForeignTool, TheSameFileIsCommittedAgainAndAgain) {
+  check_out("region.ply", {3, 4});
+  const double step = repository_->snapshot().lattice().step;
+  for (int round = 0; round < 3; ++round) {
+    FileMesh mesh = read(file_);
+    remember(mesh);
+    for (std::size_t v = 0; v < mesh.positions.size(); v += 50) mesh.positions[v].z += 2 * step;
+    write(mesh, file_);
+    (void)commit_and_check(mesh, (mesh.positions.size() + 49) / 50);
+  }
+  EXPECT_TRUE(repository_->status_file(file_).clean());
+}
+
+TEST_F(ForeignTool, OthersWorkBesideItIsNeverUndone) {
+  check_out("mine.ply", {3, 20});
+  const fs::path mine = file_;
+  check_out("theirs.ply", {20});
+  FileMesh theirs = read(file_);
+  const double step = repository_->snapshot().lattice().step;
+  // Not on its border: the edits shall not meet.
+  const RegionMesh region = repository_->snapshot().read({ChartId(20)});
+  const auto inner = std::find_if(region.keys.begin(), region.keys.end(),
+                                  [](VertexKey k) { return k.where == VertexKey::Where::chart; });
+  theirs.positions[static_cast<std::size_t>(inner - region.keys.begin())].z += 9 * step;
+  write(theirs, file_);
+  ASSERT_EQ(repository_->commit_file(file_, message("theirs")).revision, VersionId(2));
+  const TriangleSet chart20 = triangle_set(repository_->snapshot().read({ChartId(20)}));
+
+  const auto edit_chart_3 = [&](double by) {
+    FileMesh mesh = read(mine);
+    const RegionMesh r3 = repository_->snapshot("mesh", "v1").read({ChartId(3), ChartId(20)});
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+      if (r3.keys[v].where == VertexKey::Where::chart && r3.keys[v].id == 3) {
+        mesh.positions[v].z += by * step;
+        break;
+      }
+    write(mesh, mine);
+  };
+  for (const double by : {4.0, 5.0}) {
+    edit_chart_3(by);
+    EXPECT_EQ(repository_->status_file(mine).changed_by_others, std::vector<ChartId>{ChartId(20)});
+    const CommitReport report = repository_->commit_file(mine, message("mine"));
+    EXPECT_TRUE(report.conflicts.empty());
+    EXPECT_EQ(report.vertices_moved, 1U);
+    EXPECT_EQ(triangle_set(repository_->snapshot().read({ChartId(20)})), chart20) << "their work stands";
+  }
+}
+
+TEST_F(ForeignTool, ChangedConnectivityIsRefusedWithAPlace) {
+  check_out("region.ply", {3, 4});
+  const FileMesh mesh = read(file_);
+  const auto refused = [&](FileMesh edited, const char* what) {
+    write(edited, file_);
+    try {
+      (void)repository_->commit_file(file_, message("bad"));
+      ADD_FAILURE() << what << " was taken";
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::invalid_argument) << what;
+      EXPECT_NE(std::string(e.what()).find("only vertices may move"), std::string::npos) << e.what();
+    }
+  };
+  FileMesh hole = mesh;
+  hole.faces.pop_back();
+  refused(hole, "a removed face");
+  FileMesh more = mesh;
+  more.faces.push_back(more.faces.front());
+  refused(more, "an added face");
+  FileMesh flipped = renumbered(mesh, 2);
+  std::swap(flipped.faces[5][0], flipped.faces[5][1]);
+  refused(flipped, "a face turned over");
+  FileMesh torn = soup(mesh);
+  torn.positions[10].x += 100 * repository_->snapshot().lattice().step;
+  refused(torn, "a vertex torn apart");
+  EXPECT_EQ(repository_->resolve("HEAD"), VersionId(1));
+}
+
+TEST_F(ForeignTool, EditedFilesAreNotOverwrittenUnasked) {
+  check_out("region.ply", {3});
+  FileOptions careful;
+  careful.overwrite = false;
+  (void)repository_->checkout_file(repository_->snapshot(), {ChartId(4)}, file_, careful);
+  std::ofstream(file_, std::ios::app) << "\n";
+  EXPECT_THROW((void)repository_->checkout_file(repository_->snapshot(), {ChartId(4)}, file_, careful), Error);
+}
+
+TEST_F(ForeignTool, ASidecarIsNeededAndMustFit) {
+  check_out("region.ply", {3});
+  EXPECT_THROW((void)repository_->commit_file(repository_ / "input.ply", message("x")), Error);
+  TempRepository other(sphere(500));
+  EXPECT_THROW((void)other->commit_file(file_, message("x")), Error);
+  EXPECT_EQ(open_for_file(file_).id(), repository_->id());
+  std::ofstream(file_.string() + ".ramcdb.json") << "{\"format\": 7";
+  EXPECT_THROW((void)repository_->commit_file(file_, message("x")), Error);
+}
+
+TEST_F(ForeignTool, PaintedFilesAreToLookAt) {
+  FileOptions options;
+  options.paint = Paint::chart;
+  file_ = repository_ / "painted.ply";
+  (void)repository_->checkout_file(repository_->snapshot(), {ChartId(3), ChartId(4)}, file_, options);
+  EXPECT_THROW((void)repository_->commit_file(file_, message("x")), Error);
+  options.paint = Paint::bits;
+  EXPECT_THROW((void)repository_->export_mesh(repository_->snapshot(), repository_ / "painted.obj", options), Error);
+}
+
+}  // namespace
+}  // namespace ramcdb::test

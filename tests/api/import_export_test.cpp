@@ -1,0 +1,162 @@
+#include <cmath>
+#include <fstream>
+
+#include "db/store.h"
+#include "tests/api/temp_repository.h"
+
+namespace ramcdb::test {
+namespace {
+
+struct Family {
+  const char* name;
+  TestMesh mesh;
+};
+
+std::vector<Family> families() {
+  return {{"sphere", sphere(6000)},
+          {"torus", torus(5000)},
+          {"terrain", terrain(60, 50)},
+          {"genus3", genus3(6000)},
+          {"components", several_components()},
+          {"boxes", boxes(200)},
+          {"scan", scan(8000)},
+          {"moebius", moebius()},
+          {"two cubes on an edge", two_cubes_sharing_edge()},
+          {"hourglass", hourglass()},
+          {"three faces on an edge", three_faces_one_edge()},
+          {"degenerate and duplicate", degenerate_and_duplicate_faces()},
+          {"isolated vertices", isolated_vertices()}};
+}
+
+TEST(Import, ThenExportGivesTheSameTrianglesOnTheLattice) {
+  for (const Family& family : families()) {
+    SCOPED_TRACE(family.name);
+    TempRepository repository(family.mesh);
+    const Snapshot snapshot = repository->snapshot();
+    const auto expected = triangle_set(snapped(snapshot.lattice(), family.mesh.positions), family.mesh.faces);
+    EXPECT_EQ(triangle_set(whole(snapshot)), expected);
+    for (const char* name : {"out.ply", "out.obj", "out.off"}) {
+      const auto report = repository->export_mesh(snapshot, repository / name, {});
+      EXPECT_EQ(triangle_set_of_file(snapshot.lattice(), repository / name), expected) << name;
+      EXPECT_EQ(report.faces, family.mesh.faces.size());
+      EXPECT_EQ(report.vertices, family.mesh.positions.size()) << "no vertex is lost or doubled";
+    }
+  }
+}
+
+TEST(Import, CountsEveryVertexOnce) {
+  for (const Family& family : families()) {
+    SCOPED_TRACE(family.name);
+    TempRepository repository(family.mesh);
+    auto points = whole(repository->snapshot()).points;
+    auto expected = snapped(repository->snapshot().lattice(), family.mesh.positions);
+    std::sort(points.begin(), points.end());
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(points, expected);
+    EXPECT_EQ(repository.import_report().info.vertices, family.mesh.positions.size());
+  }
+}
+
+TEST(Import, MovesNoCoordinateByMoreThanHalfAStep) {
+  for (const unsigned bits : {8U, 12U, 16U, 20U}) {
+    TempRepository repository(terrain(40, 40), 500, bits);
+    const ImportReport& report = repository.import_report();
+    EXPECT_LE(report.measured_error, report.info.max_error * (1 + 1e-9)) << bits << " bits";
+    EXPECT_GT(report.measured_error, 0);
+  }
+}
+
+/// All blobs of a mesh's charts, wires and pages, in id order.
+std::vector<Buffer> blobs_of(Repository& repository, const std::string& mesh) {
+  const auto store = db::Store::open(repository.folder(), db::Access::read);
+  const VersionId head = store->resolve("HEAD");
+  const auto roots = store->roots(head);
+  const auto root = std::find_if(roots.begin(), roots.end(), [&](const auto& r) { return r.name == mesh; });
+  const MeshInfo info = repository.snapshot(mesh).info();
+  const auto reader = store->reader();
+  std::vector<Buffer> blobs;
+  for (std::uint32_t id = 1; id <= info.charts; ++id)
+    blobs.push_back(reader->get({db::Kind::chart, root->mesh, id, root->root_version, 0}));
+  for (std::uint32_t id = 1; id <= info.wires; ++id)
+    blobs.push_back(reader->find({db::Kind::wire, root->mesh, id, root->root_version, 0}).value_or(Buffer{}));
+  return blobs;
+}
+
+TEST(Import, OfAnExportOnTheSameLatticeGivesTheSameBytes) {
+  for (const Family& family : families()) {
+    SCOPED_TRACE(family.name);
+    TempRepository repository(family.mesh);
+    for (const char* name : {"again.ply", "again.obj"}) {
+      (void)repository->export_mesh(repository->snapshot("mesh"), repository / name, {});
+      ImportOptions options;
+      options.name = name;
+      options.lattice = repository->snapshot("mesh").lattice();
+      options.chart_faces = 500;
+      (void)repository->import(repository / name, options);
+      EXPECT_EQ(blobs_of(*repository, "mesh"), blobs_of(*repository, name)) << name;
+    }
+  }
+}
+
+TEST(Import, DoesNotDependOnOrderOrThreads) {
+  const TestMesh mesh = scan(8000);
+  TempRepository repository(mesh);
+  write_test_mesh(shuffled(mesh, 7), repository / "shuffled.ply");
+  ImportOptions options;
+  options.name = "shuffled";
+  options.bits = 14;
+  options.chart_faces = 500;
+  options.threads = 1;
+  (void)repository->import(repository / "shuffled.ply", options);
+  EXPECT_EQ(blobs_of(*repository, "mesh"), blobs_of(*repository, "shuffled"));
+}
+
+TEST(Import, RefusesWhatItCannotTakeWholeAndChangesNothing) {
+  TempRepository repository(sphere(500));
+  const auto refused = [&](const char* name, const std::string& text, Errc code) {
+    std::ofstream(repository / name) << text;
+    ImportOptions options;
+    options.name = "other";
+    try {
+      (void)repository->import(repository / name, options);
+      ADD_FAILURE() << name << " was taken";
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), code) << e.what();
+    }
+  };
+  refused("nan.off", "OFF\n3 1 0\n0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n", Errc::invalid_argument);
+  refused("index.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", Errc::invalid_argument);
+  refused("empty.off", "OFF\n0 0 0\n", Errc::invalid_argument);
+  refused("short.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n", Errc::invalid_argument);
+  refused("what.xyz", "1 2 3\n", Errc::invalid_argument);
+  ImportOptions taken;
+  taken.name = "mesh";
+  EXPECT_THROW((void)repository->import(repository / "input.ply", taken), Error);
+  EXPECT_EQ(repository->resolve("HEAD"), VersionId(1));
+  EXPECT_EQ(repository->meshes().size(), 1U);
+}
+
+TEST(Export, OfGeoreferencedCoordinatesKeepsThem) {
+  TestMesh mesh = terrain(30, 30);
+  for (Point& p : mesh.positions) {
+    p.x += 566000.25;
+    p.y += 5120000.5;
+  }
+  TempRepository repository(mesh, 500, 20);
+  const Snapshot snapshot = repository->snapshot();
+  for (const char* name : {"utm.ply", "utm.obj", "utm.off"}) {
+    (void)repository->export_mesh(snapshot, repository / name, {});
+    EXPECT_EQ(triangle_set_of_file(snapshot.lattice(), repository / name), triangle_set(whole(snapshot))) << name;
+  }
+}
+
+TEST(Info, PartsAddUpToThePayload) {
+  TempRepository repository(scan(8000));
+  const MeshBytes b = repository->snapshot().info().bytes;
+  EXPECT_EQ(b.payload, b.wire_net + b.wires + b.connectivity + b.geometry + b.chart_headers + b.attributes + b.tables);
+  EXPECT_GT(b.geometry, b.connectivity);
+  EXPECT_GT(b.store, b.payload);
+}
+
+}  // namespace
+}  // namespace ramcdb::test
