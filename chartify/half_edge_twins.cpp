@@ -1,0 +1,62 @@
+#include "chartify/half_edge_twins.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace ramcdb::chartify {
+namespace {
+
+struct Ends {
+  std::uint32_t low, high;
+  friend bool operator==(const Ends&, const Ends&) = default;
+};
+
+Ends ends_of(const IndexedMesh& mesh, HalfEdge h) {
+  const std::uint32_t a = mesh.faces[face_of(h)][h % 3], b = mesh.faces[face_of(h)][next_in_face(h) % 3];
+  return {std::min(a, b), std::max(a, b)};
+}
+
+/// Stable counting sort of `order` by a key below `keys`.
+template <class Key>
+std::vector<HalfEdge> sort_by(const std::vector<HalfEdge>& order, std::size_t keys, Key&& key) {
+  std::vector<std::uint32_t> at(keys + 1, 0);
+  for (const HalfEdge h : order) ++at[key(h) + 1];
+  std::partial_sum(at.begin(), at.end(), at.begin());
+  std::vector<HalfEdge> sorted(order.size());
+  for (const HalfEdge h : order) sorted[at[key(h)]++] = h;
+  return sorted;
+}
+
+}  // namespace
+
+EdgeGroups group_half_edges(const IndexedMesh& mesh) {
+  EdgeGroups groups;
+  const std::size_t count = 3 * mesh.faces.size(), vertices = mesh.positions.size();
+  std::vector<HalfEdge> order(count);
+  std::iota(order.begin(), order.end(), 0U);
+  order = sort_by(order, vertices, [&](HalfEdge h) { return ends_of(mesh, h).high; });
+  groups.half_edges = sort_by(order, vertices, [&](HalfEdge h) { return ends_of(mesh, h).low; });
+  groups.edge_of.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const HalfEdge h = groups.half_edges[i];
+    if (i == 0 || !(ends_of(mesh, h) == ends_of(mesh, groups.half_edges[i - 1])))
+      groups.first.push_back(static_cast<std::uint32_t>(i));
+    groups.edge_of[h] = static_cast<std::uint32_t>(groups.first.size() - 1);
+  }
+  groups.first.push_back(static_cast<std::uint32_t>(count));
+  return groups;
+}
+
+std::vector<HalfEdge> find_twins(const IndexedMesh& mesh, const EdgeGroups& edges) {
+  std::vector<HalfEdge> twins(edges.edge_of.size(), kNoTwin);
+  for (std::size_t e = 0; e < edges.edge_count(); ++e) {
+    if (edges.first[e + 1] - edges.first[e] != 2) continue;
+    const HalfEdge a = edges.half_edges[edges.first[e]], b = edges.half_edges[edges.first[e] + 1];
+    if (face_of(a) == face_of(b) || mesh.faces[face_of(a)][a % 3] == mesh.faces[face_of(b)][b % 3]) continue;
+    twins[a] = b;
+    twins[b] = a;
+  }
+  return twins;
+}
+
+}  // namespace ramcdb::chartify

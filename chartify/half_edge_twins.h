@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "chartify/chartify.h"
+
+namespace ramcdb::chartify {
+
+/// Half-edge 3 * face + i runs from corner i of its face to the next corner.
+using HalfEdge = std::uint32_t;
+inline constexpr HalfEdge kNoTwin = ~HalfEdge{0};
+
+inline std::uint32_t face_of(HalfEdge h) { return h / 3; }
+inline HalfEdge next_in_face(HalfEdge h) { return h % 3 == 2 ? h - 2 : h + 1; }
+inline HalfEdge previous_in_face(HalfEdge h) { return h % 3 == 0 ? h + 2 : h - 1; }
+
+/// The half-edges of a mesh, grouped by the edge they lie on.
+struct EdgeGroups {
+  std::vector<std::uint32_t> edge_of;    ///< per half-edge
+  std::vector<std::uint32_t> first;      ///< per edge, and one more: where its half-edges begin in `half_edges`
+  std::vector<HalfEdge> half_edges;      ///< ascending within an edge
+
+  [[nodiscard]] std::size_t edge_count() const { return first.size() - 1; }
+};
+
+/// Edges are numbered by their vertex pairs, ascending.
+[[nodiscard]] EdgeGroups group_half_edges(const IndexedMesh& mesh);
+
+/// For every half-edge the one that two different faces share with it in opposite directions, where just these two lie
+/// on the edge; kNoTwin elsewhere. Faces are adjacent over such edges and no others.
+[[nodiscard]] std::vector<HalfEdge> find_twins(const IndexedMesh& mesh, const EdgeGroups& edges);
+
+}  // namespace ramcdb::chartify
