@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "codec/built_in_prior.h"
 #include "codec/range_coder.h"
 #include "ramcdb/error.h"
 
@@ -13,9 +14,20 @@
 /// from the same state, so that it opens alone.
 namespace ramcdb::codec {
 
+inline constexpr std::uint16_t kPriorBits = 10;
+using MissPrior = std::remove_cvref_t<decltype(kMissPrior[0])>;
+
+/// An adaptive bit that starts from a built-in probability, in 1/256, as if from some earlier bits.
+inline AdaptiveBit learned(std::uint8_t p) { return {static_cast<std::uint16_t>(p * 256), kPriorBits}; }
+
 /// How many edges a pivot has inside its open corner: unary, by the corner's angle and the faces the pivot has already.
 class FanSizeModel {
  public:
+  FanSizeModel() {
+    for (std::size_t a = 0; a < bits_.size(); ++a)
+      for (std::size_t i = 0; i < kFanSizePrior[a].size(); ++i) bits_[a][i / 4][i % 4] = learned(kFanSizePrior[a][i]);
+  }
+
   /// \param angle in quadrants \param faces of the pivot \param max the largest size that can be meant
   template <class Coder>
   std::uint32_t code(Coder& coder, double angle, std::uint32_t faces, bool on_border, std::size_t max,
@@ -37,6 +49,15 @@ class FanSizeModel {
 /// magnitude, the rest raw. The rounded-off fraction of the prediction tells which neighbour is the likelier.
 class MissModel {
  public:
+  MissModel() = default;
+  explicit MissModel(const MissPrior& prior) {
+    const std::uint8_t* p = prior.data();
+    for (AdaptiveBit& bit : nonzero_) bit = learned(*p++);
+    for (AdaptiveBit& bit : negative_) bit = learned(*p++);
+    for (std::size_t i = 0; i < 11; ++i) exponent_[i] = learned(*p++);
+    for (std::size_t i = 1; i < 6; ++i) second_[i] = learned(*p++);
+  }
+
   /// \param fraction prediction less its rounded value, in [-1/2, 1/2]
   template <class Coder>
   std::int32_t code(Coder& coder, double fraction, std::int32_t miss) {
@@ -83,7 +104,12 @@ struct DenseModels {
   AdaptiveUnsigned join_rank;
   std::array<AdaptiveSigned, 3> seed;      ///< corners of a closed component, by axis
   std::array<AdaptiveSigned, 3> isolated;  ///< vertices without faces, by axis
-  std::vector<MissModel> misses = std::vector<MissModel>(3 * kActivities * kEdgeSizes);
+  std::vector<MissModel> misses;
+
+  DenseModels() {
+    misses.reserve(3 * kActivities * kEdgeSizes);
+    for (std::size_t i = 0; i < 3 * kActivities * kEdgeSizes; ++i) misses.emplace_back(kMissPrior[i * kMissPrior.size() / (3 * kActivities * kEdgeSizes)]);
+  }
 
   /// \param kind 0, 1: first and second tangential axis, 2: the axis along the normal
   MissModel& miss(int kind, int activity, int edge_size) {
