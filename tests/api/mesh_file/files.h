@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "api/mesh_file/mesh_file.h"
+
+/// Small files for the tests of readers and writers.
+namespace ramcdb::test {
+
+/// A folder of its own per object, removed with it.
+class ScratchFolder {
+ public:
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  [[nodiscard]] std::filesystem::path file(std::string_view name) const { return folder_ / name; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+void write_bytes(const std::filesystem::path& file, std::string_view bytes);
+[[nodiscard]] std::string read_bytes(const std::filesystem::path& file);
+
+/// Reads bytes as a file of this name; the extension chooses the format.
+[[nodiscard]] mesh_file::MeshData read_text(std::string_view name, std::string_view bytes);
+
+/// The text of the ramcdb::Error that reading throws; fails the test and returns "" when none is thrown, when it does
+/// not name the file, or does not say how to go on.
+[[nodiscard]] std::string refusal(std::string_view name, std::string_view bytes);
+
+/// How often `what` was dropped; 0 when it is not named.
+[[nodiscard]] std::uint64_t dropped(const mesh_file::MeshData& mesh, std::string_view what);
+
+/// Corners in range, sizes that add up, coordinates finite: what every mesh that a reader returns must be.
+[[nodiscard]] bool is_sound(const mesh_file::MeshData& mesh);
+
+/// The bit patterns of all coordinates, so that -0 differs from 0.
+[[nodiscard]] std::vector<std::uint64_t> bits(const std::vector<Point>& positions);
+
+/// Faces as the writer takes them.
+[[nodiscard]] std::vector<Triangle> triangles(const mesh_file::MeshData& mesh);
+
+/// The bytes of `value`, lowest first or highest first.
+template <class T>
+[[nodiscard]] std::string bytes_of(T value, bool big_endian = false) {
+  std::string bytes(reinterpret_cast<const char*>(&value), sizeof value);
+  return big_endian ? std::string(bytes.rbegin(), bytes.rend()) : bytes;
+}
+
+}  // namespace ramcdb::test
