@@ -12,13 +12,24 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace ramcdb::mesh_file {
 namespace {
 
+constexpr double kLargestFloat = std::numeric_limits<float>::max();
+constexpr std::string_view kRest = "things of other names";
 constexpr std::string_view kHowToGoOn = "repair or convert the file; nothing was imported";
 
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+
+/// The first character of a number that the parsers take: they know no plus sign.
+const char* behind_plus(std::string_view text) {
+  const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
+  return text.data() + (plus ? 1 : 0);
+}
 
 }  // namespace
 
@@ -53,6 +64,11 @@ Error bad_byte(const FileBytes& file, std::size_t offset, std::string_view what)
   return Error(Errc::invalid_argument, what, fmt::format("{}, byte {}", file.name(), offset), kHowToGoOn);
 }
 
+TextScanner::TextScanner(const FileBytes& file, std::size_t offset, std::size_t lines_before, const Progress& progress)
+    : file_(file), at_(offset), line_(lines_before), progress_(progress) {
+  if (at_ == 0 && file.text().substr(0, kByteOrderMark.size()) == kByteOrderMark) at_ = kByteOrderMark.size();
+}
+
 bool TextScanner::next_line(bool continued) {
   const std::string_view text = file_.text();
   if (at_ >= text.size()) return false;
@@ -64,7 +80,8 @@ bool TextScanner::next_line(bool continued) {
     ++line_;
     if (progress_ && line_ % 65536 == 0) progress_(static_cast<double>(at_) / static_cast<double>(text.size()));
     while (!piece.empty() && is_blank(piece.back())) piece.remove_suffix(1);
-    const bool goes_on = continued && !piece.empty() && piece.back() == '\\' && at_ < text.size();
+    const bool is_comment = joined_.empty() && !piece.empty() && piece.front() == '#';
+    const bool goes_on = continued && !is_comment && !piece.empty() && piece.back() == '\\' && at_ < text.size();
     if (goes_on) piece.remove_suffix(1);
     if (!goes_on && joined_.empty()) {
       rest_ = piece;
@@ -101,12 +118,12 @@ std::string_view TextScanner::word_anywhere() {
 
 double TextScanner::parse_number(std::string_view text, std::string_view what) {
   if (text.empty()) throw bad(fmt::format("{} is missing", what));
-  const char* begin = text.data() + (text.front() == '+' && text.size() > 1 ? 1 : 0);
   double value = 0;
-  const auto [end, error] = fast_float::from_chars(begin, text.data() + text.size(), value);
+  const auto [end, error] = fast_float::from_chars(behind_plus(text), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size())
     throw bad(fmt::format("{} is no number: '{}'", what, text.substr(0, 40)));
   if (!std::isfinite(value)) throw bad(fmt::format("{} is not finite: '{}'", what, text.substr(0, 40)));
+  if (std::abs(value) > kLargestFloat) saw_doubles_ = true;
   if (!saw_doubles_ && text.size() > 9) {
     std::size_t digits = 0;
     for (const char c : text) {
@@ -120,9 +137,8 @@ double TextScanner::parse_number(std::string_view text, std::string_view what) {
 
 std::int64_t TextScanner::parse_integer(std::string_view text, std::string_view what) const {
   if (text.empty()) throw bad(fmt::format("{} is missing", what));
-  const char* begin = text.data() + (text.front() == '+' && text.size() > 1 ? 1 : 0);
   std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
+  const auto [end, error] = std::from_chars(behind_plus(text), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size())
     throw bad(fmt::format("{} is no whole number: '{}'", what, text.substr(0, 40)));
   return value;
@@ -139,7 +155,11 @@ void DroppedCounter::add(std::string_view what, std::uint64_t count) {
       dropped.count += count;
       return;
     }
-  dropped_.push_back({std::string(what), count});
+  if (dropped_.size() == kMostNames) what = kRest;
+  if (dropped_.size() > kMostNames)
+    dropped_.back().count += count;
+  else
+    dropped_.push_back({std::string(what), count});
 }
 
 void DroppedCounter::hand_over(MeshData& mesh) {

@@ -43,11 +43,12 @@ void read_stl(const FileBytes& file, MeshData& mesh, const Progress& progress);
 /// Walks text line by line and word by word, without locale and without copying.
 class TextScanner {
  public:
-  TextScanner(const FileBytes& file, std::size_t offset = 0, std::size_t lines_before = 0,
-              const Progress& progress = {})
-      : file_(file), at_(offset), line_(lines_before), progress_(progress) {}
+  /// From byte `offset`, before which so many lines stand; 0 steps over a UTF-8 byte order mark.
+  explicit TextScanner(const FileBytes& file, std::size_t offset = 0, std::size_t lines_before = 0,
+                       const Progress& progress = {});
 
-  /// Goes on to the next line; false at the end of the file. `continued`: a backslash at its end joins the next line.
+  /// Goes on to the next line; false at the end of the file. `continued`: a backslash at its end joins the next line,
+  /// unless it is a comment, which may well end with the name of a folder.
   bool next_line(bool continued = false);
   /// The next word of the line; empty at its end.
   std::string_view word();
@@ -62,8 +63,9 @@ class TextScanner {
 
   [[nodiscard]] std::size_t line() const { return line_; }
   [[nodiscard]] std::size_t offset() const { return at_; }
-  [[nodiscard]] std::size_t left() const { return file_.text().size() - at_; }
-  /// Whether any number so far had more than nine digits.
+  /// Bytes not yet taken, those of the current line with them.
+  [[nodiscard]] std::size_t left() const { return rest_.size() + file_.text().size() - at_; }
+  /// Whether any number so far had more than nine digits, or is too large for float32.
   [[nodiscard]] bool saw_doubles() const { return saw_doubles_; }
   [[nodiscard]] Error bad(std::string_view what) const { return bad_line(file_, line_, what); }
   /// Starts of comments, other than at the start of a line: everything behind it is skipped. 0: there are none.
@@ -82,9 +84,12 @@ class TextScanner {
   Progress progress_;
 };
 
-/// Counts things by name, in the order in which they first came.
+/// Counts things by name, in the order in which they first came. A file may make up names: beyond kMostNames they are
+/// counted together, so that neither time nor memory follow them.
 class DroppedCounter {
  public:
+  static constexpr std::size_t kMostNames = 64;
+
   void add(std::string_view what, std::uint64_t count = 1);
   void hand_over(MeshData& mesh);
 

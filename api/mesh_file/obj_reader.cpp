@@ -9,12 +9,14 @@ namespace {
 class ObjReader {
  public:
   ObjReader(const FileBytes& file, MeshData& mesh, const Progress& progress)
-      : scan_(file, 0, 0, progress), mesh_(mesh) {}
+      : file_(file), scan_(file, 0, 0, progress), mesh_(mesh) {
+    scan_.comment = '#';
+  }
 
   void run() {
     while (scan_.next_line(true)) {
       const std::string_view keyword = scan_.word();
-      if (keyword.empty() || keyword.front() == '#') continue;
+      if (keyword.empty()) continue;
       if (keyword == "v")
         read_vertex();
       else if (keyword == "f")
@@ -22,6 +24,10 @@ class ObjReader {
       else
         drop(keyword);
     }
+    if (!mesh_.corners.empty() && largest_ >= mesh_.positions.size())
+      throw bad_line(file_, largest_line_,
+                     fmt::format("vertex index {} does not exist ({} vertices)", std::uint64_t{largest_} + 1,
+                                 mesh_.positions.size()));
     mesh_.scalar = scan_.saw_doubles() ? Scalar::float64 : Scalar::float32;
     dropped_.hand_over(mesh_);
   }
@@ -47,13 +53,17 @@ class ObjReader {
     mesh_.face_sizes.push_back(corners);
   }
 
-  std::uint32_t index(std::string_view word) const {
+  std::uint32_t index(std::string_view word) {
     const std::int64_t i = scan_.parse_integer(word, "a vertex index");
     const auto count = static_cast<std::int64_t>(mesh_.positions.size());
     const std::int64_t v = i < 0 ? count + i : i - 1;
     // Vertices may follow their faces, so that a large index is judged at the end of the file; a relative one is not.
     if (i == 0 || v < 0 || v > 0xfffffffd)
       throw scan_.bad(fmt::format("vertex index {} does not exist ({} vertices so far)", i, count));
+    if (v > largest_ || !largest_line_) {
+      largest_ = static_cast<std::uint32_t>(v);
+      largest_line_ = scan_.line();
+    }
     return static_cast<std::uint32_t>(v);
   }
 
@@ -70,8 +80,11 @@ class ObjReader {
       dropped_.add(fmt::format("'{}' lines", keyword.substr(0, 40)));
   }
 
+  const FileBytes& file_;
   TextScanner scan_;
   MeshData& mesh_;
+  std::uint32_t largest_ = 0;  ///< vertex index so far, and where it stands
+  std::size_t largest_line_ = 0;
   DroppedCounter dropped_;
 };
 

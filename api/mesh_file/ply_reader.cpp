@@ -61,9 +61,14 @@ struct Element {
 enum class Encoding { ascii, little, big };
 
 struct Header {
-  Encoding encoding = Encoding::ascii;
+  std::optional<Encoding> encoding;
   std::vector<Element> elements;
   std::size_t size = 0, lines = 0;
+
+  [[nodiscard]] const Element* find(std::string_view name) const {
+    const auto found = std::find_if(elements.begin(), elements.end(), [&](const Element& e) { return e.name == name; });
+    return found == elements.end() ? nullptr : &*found;
+  }
 };
 
 Role role_of(const Element& element, const Property& p) {
@@ -92,8 +97,10 @@ class HeaderReader {
       if (keyword == "end_header") break;
       read_line(keyword);
     }
+    if (!header_.encoding) throw scan_.bad("the header names no format");
     header_.size = scan_.offset();
     header_.lines = scan_.line();
+    check_elements();
     check_counts();
     return std::move(header_);
   }
@@ -105,6 +112,7 @@ class HeaderReader {
     } else if (keyword == "element") {
       Element element;
       element.name = scan_.word();
+      if (header_.find(element.name)) throw scan_.bad(fmt::format("element '{}' stands twice", element.name));
       const std::int64_t count = scan_.integer("the count of an element");
       if (count < 0) throw scan_.bad("the count of an element is negative");
       element.count = static_cast<std::uint64_t>(count);
@@ -117,6 +125,7 @@ class HeaderReader {
   }
 
   void read_format(std::string_view name) {
+    if (header_.encoding) throw scan_.bad("the format stands twice");
     if (name == "ascii")
       header_.encoding = Encoding::ascii;
     else if (name == "binary_little_endian")
@@ -141,8 +150,7 @@ class HeaderReader {
     std::string_view first = scan_.word();
     if (first == "list") {
       p.count_type = read_type();
-      if (!is_integer(*p.count_type) || *p.count_type == Type::int8 || *p.count_type == Type::int16)
-        throw scan_.bad("the count type of a list must be an unsigned integer");
+      if (!is_integer(*p.count_type)) throw scan_.bad("the count type of a list must be an integer");
       first = scan_.word();
     }
     const auto type = type_of(first);
@@ -156,14 +164,30 @@ class HeaderReader {
     element.properties.push_back(std::move(p));
   }
 
+  /// What is not read must not pass for an empty mesh.
+  void check_elements() const {
+    const Element* vertex = header_.find("vertex");
+    if (!vertex) throw scan_.bad("the file has no element 'vertex'");
+    if (!vertex->has(Role::x) || !vertex->has(Role::y) || !vertex->has(Role::z))
+      throw scan_.bad("vertices have no x, y and z");
+    const Element* face = header_.find("face");
+    if (face && face->count && !face->has(Role::indices))
+      throw scan_.bad("faces have no list vertex_indices of integers");
+    const Element* strips = header_.find("tristrips");
+    if (strips && strips->count) throw scan_.bad("triangle strips are not read: convert them to faces");
+    for (const Element& e : header_.elements)
+      if (e.count && e.properties.empty()) throw scan_.bad(fmt::format("element '{}' has no property", e.name));
+  }
+
   void check_counts() const {
-    const std::size_t left = file_.text().size() - header_.size;
+    std::size_t left = file_.text().size() - header_.size;
     for (const Element& e : header_.elements) {
       const std::size_t each = e.least_bytes(header_.encoding == Encoding::ascii);
       // The last number of a text file needs no blank behind it.
       if (each && e.count > (left + 1) / each)
         throw bad_byte(file_, header_.size,
                        fmt::format("the file is cut off: no room for {} of '{}'", e.count, e.name));
+      left -= std::min<std::size_t>(left, e.count * each);
     }
   }
 
@@ -263,7 +287,11 @@ template <class Values>
 class BodyReader {
  public:
   BodyReader(Values values, const Header& header, MeshData& mesh, const Progress& progress)
-      : values_(std::move(values)), header_(header), mesh_(mesh), progress_(progress) {}
+      : values_(std::move(values)),
+        header_(header),
+        vertices_(header.find("vertex")->count),
+        mesh_(mesh),
+        progress_(progress) {}
 
   void run() {
     for (const Element& element : header_.elements) {
@@ -292,8 +320,6 @@ class BodyReader {
   }
 
   void read_vertices(const Element& element) {
-    if (!element.has(Role::x) || !element.has(Role::y) || !element.has(Role::z))
-      values_.refuse("vertices have no x, y and z");
     const bool ids = element.has(Role::id_high) && element.has(Role::id_low);
     mesh_.positions.reserve(element.count);
     if (ids) mesh_.vertex_ids.reserve(element.count);
@@ -347,7 +373,7 @@ class BodyReader {
     if (corners > values_.left_for(p.type)) values_.refuse("the file is cut off");
     for (std::uint64_t c = 0; c < corners; ++c) {
       const std::uint64_t v = values_.whole(p.type);
-      if (v > 0xfffffffd) values_.refuse(fmt::format("vertex index {} does not exist", v));
+      if (v >= vertices_) values_.refuse(fmt::format("vertex index {} does not exist ({} vertices)", v, vertices_));
       mesh_.corners.push_back(static_cast<std::uint32_t>(v));
     }
     mesh_.face_sizes.push_back(static_cast<std::uint32_t>(corners));
@@ -361,6 +387,7 @@ class BodyReader {
 
   Values values_;
   const Header& header_;
+  std::uint64_t vertices_;
   MeshData& mesh_;
   const Progress& progress_;
   DroppedCounter dropped_;
@@ -370,9 +397,7 @@ class BodyReader {
 
 void read_ply(const FileBytes& file, MeshData& mesh, const Progress& progress) {
   const Header header = HeaderReader(file).run();
-  if (std::none_of(header.elements.begin(), header.elements.end(), [](const Element& e) { return e.name == "vertex"; }))
-    throw bad_byte(file, header.size, "the file has no element 'vertex'");
-  switch (header.encoding) {
+  switch (*header.encoding) {
     case Encoding::ascii:
       BodyReader(AsciiValues(file, header, progress), header, mesh, progress).run();
       break;

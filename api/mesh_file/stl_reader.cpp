@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
 #include "api/mesh_file/file_bytes.h"
 
 /// STL, a soup of triangles. Binary: 80 bytes of anything, u32 count, then 50 bytes a triangle, little-endian: normal,
-/// three corners, u16 attribute. Which of the two kinds a file is, its length tells, not the word "solid".
+/// three corners, u16 attribute. Which of the two kinds a file is, its length tells, not the word "solid". Text: words
+/// in any case, a line each, and an "endsolid" without which the file is cut off.
 namespace ramcdb::mesh_file {
 namespace {
 
@@ -19,6 +21,20 @@ T load(const char* at) {
   T value;
   std::memcpy(&value, at, sizeof value);
   return value;
+}
+
+/// A word in lower case; exporters of old shout.
+std::string lower(std::string_view word) {
+  std::string text(word.substr(0, 40));
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
+bool begins_as_text(std::string_view text) {
+  if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
+  text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+  return lower(text.substr(0, 5)) == "solid";
 }
 
 void add_corner(MeshData& mesh, const Point& p) {
@@ -47,15 +63,16 @@ void read_binary(const FileBytes& file, MeshData& mesh, const Progress& progress
   }
   DroppedCounter dropped;
   dropped.add("facet attributes", attributes);
+  dropped.add("bytes behind the last facet", text.size() - kHeader - kRecord * std::size_t{count});
   dropped.hand_over(mesh);
 }
 
 void read_ascii(const FileBytes& file, MeshData& mesh, const Progress& progress) {
   TextScanner scan(file, 0, 0, progress);
   std::size_t corners = 0;
-  bool in_facet = false, any = false;
+  bool in_solid = false, in_facet = false, any = false;
   while (scan.next_line()) {
-    const std::string_view keyword = scan.word();
+    const std::string keyword = lower(scan.word());
     if (keyword == "facet") {
       if (in_facet) throw scan.bad("a facet begins inside another");
       in_facet = any = true;
@@ -68,12 +85,14 @@ void read_ascii(const FileBytes& file, MeshData& mesh, const Progress& progress)
     } else if (keyword == "endfacet") {
       if (!in_facet || corners != 3) throw scan.bad(fmt::format("a facet has {} vertices", corners));
       in_facet = false;
-    } else if (!keyword.empty() && keyword != "solid" && keyword != "endsolid" && keyword != "outer" &&
-               keyword != "endloop") {
-      throw scan.bad(fmt::format("'{}' is not STL", keyword.substr(0, 40)));
+    } else if (keyword == "solid" || keyword == "endsolid") {
+      in_solid = keyword == "solid";
+    } else if (!keyword.empty() && keyword != "outer" && keyword != "endloop") {
+      throw scan.bad(fmt::format("'{}' is not STL", keyword));
     }
   }
-  if (in_facet) throw scan.bad("the file is cut off inside a facet");
+  if (in_facet || in_solid) throw scan.bad("the file is cut off: no 'endsolid'");
+  if (scan.saw_doubles()) mesh.scalar = Scalar::float64;
   if (!any) throw scan.bad("the file holds no facet");
 }
 
@@ -81,7 +100,7 @@ void read_ascii(const FileBytes& file, MeshData& mesh, const Progress& progress)
 
 void read_stl(const FileBytes& file, MeshData& mesh, const Progress& progress) {
   const std::string_view text = file.text();
-  const bool begins_solid = text.substr(0, 5) == "solid";
+  const bool begins_solid = begins_as_text(text);
   const bool fits_binary =
       text.size() >= kHeader && kHeader + kRecord * std::uint64_t{load<std::uint32_t>(text.data() + 80)} == text.size();
   if (!fits_binary && !begins_solid && text.size() < kHeader)
