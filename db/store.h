@@ -26,6 +26,7 @@ enum class Kind : std::uint8_t {
   commit_record = 6,  ///< written by the store itself
   pending = 7,        ///< written by the store itself
   mesh_record = 8,
+  store_state = 9,  ///< written by the store itself, the only one that is ever replaced
 };
 
 /// The key of a blob: immutable, written once. `layer` tells attribute blobs of one chart apart and is 0 otherwise.
@@ -94,6 +95,8 @@ class Store {
   [[nodiscard]] virtual std::vector<MeshRoot> roots(VersionId id) = 0;  ///< by name; empty for version 0
   /// Newest first along first parents and merges, from `from`; at most `limit` of them.
   [[nodiscard]] virtual std::vector<VersionInfo> history(VersionId from, std::size_t limit) = 0;
+  /// Every published version of every branch, ascending.
+  [[nodiscard]] virtual std::vector<VersionId> all_versions() = 0;
   [[nodiscard]] virtual std::vector<ChangedCharts> changed(VersionId id) = 0;
   /// The version that this attempt published, if it did: the answer to a commit whose answer got lost.
   [[nodiscard]] virtual std::optional<VersionId> published_by(std::string_view attempt) = 0;
@@ -163,7 +166,7 @@ class Writer {
 
   [[nodiscard]] virtual VersionId version() const = 0;  ///< the number this attempt gets, never used before
   [[nodiscard]] virtual VersionId tip(std::string_view branch) = 0;  ///< version 0: nothing published there yet
-  /// A new id for a mesh; the name must be free in `existing`.
+  /// A new id for a mesh. Throws limit_exceeded after 65,535 of them.
   [[nodiscard]] virtual MeshId new_mesh_id() = 0;
 
   /// Adds a blob with this attempt's version (`key.version` is set by the call). Any order; held in memory, sorted,

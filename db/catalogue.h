@@ -1,0 +1,60 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "db/commit_record.h"
+#include "db/sqlite.h"
+
+/// The SQLite half of a repository: which versions are published, and what they are called.
+///
+///     repository(id)                                      one row
+///     version(id, branch, author, message, time_us, attempt, figures, parents, roots, changed)
+///     ref(name, kind, version)                            branches and tags
+namespace ramcdb::db {
+
+struct Ref {
+  std::string name;
+  bool is_tag = false;
+  VersionId version;
+};
+
+/// For one thread at a time.
+class Catalogue {
+ public:
+  /// Makes the file and its tables; the file must not exist.
+  static void create(const std::filesystem::path& file, std::string_view repository_id);
+
+  /// Throws corrupt, unsupported_version, storage.
+  Catalogue(const std::filesystem::path& file, Database::Mode mode);
+
+  [[nodiscard]] std::string repository_id();
+  [[nodiscard]] VersionId newest();  ///< the largest number of a published version
+  [[nodiscard]] std::optional<VersionInfo> version(VersionId id);
+  [[nodiscard]] std::optional<CommitRecord> record(VersionId id);
+  [[nodiscard]] std::vector<MeshRoot> roots(VersionId id);
+  [[nodiscard]] std::vector<ChangedCharts> changed(VersionId id);
+  [[nodiscard]] std::vector<VersionId> all_versions();
+  [[nodiscard]] std::optional<VersionId> published_by(std::string_view attempt);
+  [[nodiscard]] std::vector<Ref> refs();
+  [[nodiscard]] std::optional<VersionId> ref(std::string_view name);
+
+  /// Publishes a version as the new tip of its branch, in one durable transaction. Throws conflict, and changes
+  /// nothing, when the branch's tip is not `expected_tip`.
+  void publish(const CommitRecord& record, VersionId expected_tip);
+
+  void checkpoint() { database_.checkpoint(); }
+  /// What SQLite finds wrong with its file; empty when nothing is.
+  [[nodiscard]] std::vector<std::string> integrity_problems();
+
+ private:
+  void insert(const CommitRecord& record);
+  [[nodiscard]] Buffer blob_of(VersionId id, std::string_view column);
+
+  Database database_;
+};
+
+}  // namespace ramcdb::db

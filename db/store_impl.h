@@ -1,0 +1,78 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "db/catalogue.h"
+#include "db/environment.h"
+#include "db/store.h"
+
+/// The files of a repository's folder:
+///
+///     data.mdb, data.mdb-lock      LMDB: all blobs
+///     catalogue.sqlite (-wal -shm) SQLite: versions, branches, tags
+///     writer.lock                  kernel lock of the one writer
+///     pins/                        kernel locks of those who read a version
+namespace ramcdb::db {
+
+struct Layout {
+  explicit Layout(const std::filesystem::path& root)
+      : folder(root),
+        blobs(root / "data.mdb"),
+        catalogue(root / "catalogue.sqlite"),
+        lock(root / "writer.lock"),
+        pins(root / "pins") {}
+
+  std::filesystem::path folder, blobs, catalogue, lock, pins;
+};
+
+class StoreImpl : public Store, public std::enable_shared_from_this<StoreImpl> {
+ public:
+  StoreImpl(const Layout& layout, Environment::Mode mode);
+
+  [[nodiscard]] std::string id() const override { return id_; }
+  [[nodiscard]] VersionId resolve(std::string_view revision) override;
+  [[nodiscard]] VersionInfo version(VersionId id) override;
+  [[nodiscard]] std::vector<MeshRoot> roots(VersionId id) override;
+  [[nodiscard]] std::vector<VersionInfo> history(VersionId from, std::size_t limit) override;
+  [[nodiscard]] std::vector<VersionId> all_versions() override;
+  [[nodiscard]] std::vector<ChangedCharts> changed(VersionId id) override;
+  [[nodiscard]] std::optional<VersionId> published_by(std::string_view attempt) override;
+  [[nodiscard]] std::unique_ptr<Pin> pin(VersionId id, std::string_view holder) override;
+  [[nodiscard]] std::unique_ptr<BlobReader> reader() override;
+  [[nodiscard]] std::unique_ptr<Writer> writer(double wait_seconds) override;
+  [[nodiscard]] Usage usage() override;
+  std::uint64_t check(const std::function<void(const Problem&)>& found) override;
+
+  [[nodiscard]] const Layout& layout() const { return layout_; }
+  [[nodiscard]] Environment& environment() { return environment_; }
+  [[nodiscard]] bool writable() const { return environment_.writable(); }
+
+ private:
+  /// Calls `read(catalogue)` as the only thread that uses the connection.
+  template <class Read>
+  auto with_catalogue(Read&& read) {
+    environment_.require_own_process();
+    const std::lock_guard<std::mutex> alone(mutex_);
+    return read(catalogue_);
+  }
+
+  Layout layout_;
+  Environment environment_;
+  std::mutex mutex_;
+  Catalogue catalogue_;
+  std::string id_;
+};
+
+/// Takes the writer lock, recovers, and begins an attempt.
+[[nodiscard]] std::unique_ptr<Writer> begin_attempt(std::shared_ptr<StoreImpl> store, double wait_seconds);
+
+/// What Store::check does, apart from locking the catalogue.
+std::uint64_t check_halves(Environment& environment, Catalogue& catalogue, std::string_view repository_id,
+                           const std::function<void(const Store::Problem&)>& found);
+
+/// Finds a version by what users write (Store::resolve). `seq` is the last version whose blobs are there.
+[[nodiscard]] VersionId resolve_revision(Catalogue& catalogue, std::string_view revision, VersionId seq);
+
+}  // namespace ramcdb::db
