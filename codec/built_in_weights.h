@@ -8,6 +8,7 @@ namespace ramcdb::codec {
 
 // One line per angle class; edges left 1, 2, 3 or more in blocks of eight lines. The four entries of a line: no faces
 // behind, one behind next, one behind current, both.
+// clang-format off
 inline constexpr std::array<FanWeights, kFanClasses> kBuiltInFanWeights{{
     {87, 87, 0, 0, -15, 17}, {56, 94, 0, -46, -17, 5}, {92, 55, -21, 0, -15, 15}, {71, 75, -23, -30, -11, 10},
     {118, 120, 0, 0, -4, 4}, {84, 104, 0, -26, -20, 6}, {107, 62, -37, 0, -11, 16}, {87, 97, -22, -31, -5, 5},
@@ -41,5 +42,6 @@ inline constexpr std::array<PlaneWeights, kPlaneClasses> kBuiltInPlaneWeights{{
     {0, 0, 0}, {0, 34, -9}, {0, 0, 0}, {-65, 27, 13},
     {0, 0, 0}, {-18, 28, 2}, {-17, 33, 8}, {3, 35, 5},
 }};
+// clang-format on
 
 }  // namespace ramcdb::codec

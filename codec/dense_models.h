@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "codec/built_in_prior.h"
@@ -14,10 +15,11 @@
 /// from the same state, so that it opens alone.
 namespace ramcdb::codec {
 
+/// How many earlier bits a built-in probability stands for.
 inline constexpr std::uint16_t kPriorBits = 10;
 using MissPrior = std::remove_cvref_t<decltype(kMissPrior[0])>;
 
-/// An adaptive bit that starts from a built-in probability, in 1/256, as if from some earlier bits.
+/// An adaptive bit that starts from a built-in probability, in 1/256.
 inline AdaptiveBit learned(std::uint8_t p) { return {static_cast<std::uint16_t>(p * 256), kPriorBits}; }
 
 /// How many edges a pivot has inside its open corner: unary, by the corner's angle and the faces the pivot has already.
@@ -107,8 +109,9 @@ struct DenseModels {
   std::vector<MissModel> misses;
 
   DenseModels() {
-    misses.reserve(3 * kActivities * kEdgeSizes);
-    for (std::size_t i = 0; i < 3 * kActivities * kEdgeSizes; ++i) misses.emplace_back(kMissPrior[i * kMissPrior.size() / (3 * kActivities * kEdgeSizes)]);
+    static_assert(kMissPrior.size() == 3 * kActivities, "a row per kind and activity");
+    misses.reserve(kMissPrior.size() * kEdgeSizes);
+    for (const MissPrior& prior : kMissPrior) misses.insert(misses.end(), kEdgeSizes, MissModel(prior));
   }
 
   /// \param kind 0, 1: first and second tangential axis, 2: the axis along the normal

@@ -443,7 +443,9 @@ Buffer encode_page(const Page& page) {
   Page copy = page;
   code_page(encoder, copy);
   const Buffer stream = encoder.finish();
-  Buffer blob{static_cast<std::uint8_t>(kFormat << 4 | kind)};
+  Buffer blob;
+  blob.reserve(1 + stream.size());
+  blob.push_back(static_cast<std::uint8_t>(kFormat << 4 | kind));
   blob.insert(blob.end(), stream.begin(), stream.end());
   return blob;
 }

@@ -142,7 +142,9 @@ Buffer encode_with(Predictor predictor, const Wire& wire) {
   code_points(encoder, predictor, copy, wire.points.front(), wire.points.back(),
               static_cast<std::uint32_t>(wire.points.size() - 2));
   const Buffer stream = encoder.finish();
-  Buffer blob{static_cast<std::uint8_t>(kFormat << 4 | static_cast<std::uint8_t>(predictor))};
+  Buffer blob;
+  blob.reserve(1 + stream.size());
+  blob.push_back(static_cast<std::uint8_t>(kFormat << 4 | static_cast<std::uint8_t>(predictor)));
   blob.insert(blob.end(), stream.begin(), stream.end());
   return blob;
 }
