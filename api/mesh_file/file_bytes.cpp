@@ -12,12 +12,12 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <limits>
+
+#include "api/mesh_file/float_text.h"
 
 namespace ramcdb::mesh_file {
 namespace {
 
-constexpr double kLargestFloat = std::numeric_limits<float>::max();
 constexpr std::string_view kRest = "things of other names";
 constexpr std::string_view kHowToGoOn = "repair or convert the file; nothing was imported";
 
@@ -123,15 +123,7 @@ double TextScanner::parse_number(std::string_view text, std::string_view what) {
   if (error != std::errc() || end != text.data() + text.size())
     throw bad(fmt::format("{} is no number: '{}'", what, text.substr(0, 40)));
   if (!std::isfinite(value)) throw bad(fmt::format("{} is not finite: '{}'", what, text.substr(0, 40)));
-  if (std::abs(value) > kLargestFloat) saw_doubles_ = true;
-  if (!saw_doubles_ && text.size() > 9) {
-    std::size_t digits = 0;
-    for (const char c : text) {
-      if (c == 'e' || c == 'E') break;
-      digits += (c >= '1' && c <= '9') || (c == '0' && digits);
-    }
-    saw_doubles_ = digits > 9;
-  }
+  if (!saw_doubles_) saw_doubles_ = !float_holds(text, value);
   return value;
 }
 

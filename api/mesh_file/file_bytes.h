@@ -65,7 +65,7 @@ class TextScanner {
   [[nodiscard]] std::size_t offset() const { return at_; }
   /// Bytes not yet taken, those of the current line with them.
   [[nodiscard]] std::size_t left() const { return rest_.size() + file_.text().size() - at_; }
-  /// Whether any number so far had more than nine digits, or is too large for float32.
+  /// Whether any number so far is one that float32 does not hold to its last digit.
   [[nodiscard]] bool saw_doubles() const { return saw_doubles_; }
   [[nodiscard]] Error bad(std::string_view what) const { return bad_line(file_, line_, what); }
   /// Starts of comments, other than at the start of a line: everything behind it is skipped. 0: there are none.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "api/mesh_file/file_bytes.h"
+#include "api/mesh_file/float_text.h"
 
 namespace ramcdb::mesh_file {
 namespace {
@@ -65,6 +66,8 @@ MeshData read_mesh(const std::filesystem::path& path, const std::function<void(d
   if (std::all_of(mesh.face_sizes.begin(), mesh.face_sizes.end(), [](std::uint32_t n) { return n == 3; }))
     mesh.face_sizes.clear();
   check(file, mesh);
+  if (mesh.scalar == Scalar::float32)
+    for (Point& p : mesh.positions) p = {nearest_float(p.x), nearest_float(p.y), nearest_float(p.z)};
   return mesh;
 }
 

@@ -17,7 +17,8 @@ enum class Format { ply, obj, off, stl };
 /// From the extension, in any case. Throws invalid_argument listing the formats.
 [[nodiscard]] Format format_of(const std::filesystem::path& file);
 
-/// The number type of a file's coordinates. Text counts as float64 when a number has more than nine digits.
+/// The number type of a file's coordinates. Text counts as float32 when float32 holds every coordinate of it to its
+/// last digit; they are rounded to it then, so that a float32 mesh is the same through text. Else it is float64.
 enum class Scalar { float32, float64 };
 
 struct MeshData {
@@ -64,7 +65,8 @@ struct MeshOutput {
 
 /// Writes beside the file and renames into place, so that a failure leaves what was there. Text numbers are the
 /// shortest that read back the same. STL is binary; PLY is binary little-endian unless `ascii`.
-/// Throws disk_full and storage.
+/// Throws disk_full, storage, and invalid_argument for coordinates that are not finite or too large for the scalar
+/// (STL: for float32), faces that name no vertex, ids or colours that are not one each; then nothing was touched.
 void write_mesh(const std::filesystem::path& file, Format format, const MeshOutput& mesh, bool ascii = false);
 
 }  // namespace ramcdb::mesh_file

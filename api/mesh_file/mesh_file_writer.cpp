@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "api/mesh_file/file_bytes.h"
 #include "api/mesh_file/mesh_file.h"
@@ -205,12 +206,12 @@ void write_off(NewFile& out, const MeshOutput& mesh) {
   }
 }
 
-/// The unit normal that STL wants, zero for triangles without area.
+/// The unit normal that STL wants, zero for triangles without area or too large for it.
 std::array<float, 3> facet_normal(const Point& a, const Point& b, const Point& c) {
   const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z, vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
   const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
   const double length = std::sqrt(nx * nx + ny * ny + nz * nz);
-  if (!(length > 0)) return {0, 0, 0};
+  if (!(length > 0) || !std::isfinite(length)) return {0, 0, 0};
   return {static_cast<float>(nx / length), static_cast<float>(ny / length), static_cast<float>(nz / length)};
 }
 
@@ -228,9 +229,30 @@ void write_stl(NewFile& out, const MeshOutput& mesh) {
   }
 }
 
+/// Nothing is written that our own reader would not take.
+void check(const std::filesystem::path& file, Format format, const MeshOutput& mesh) {
+  const auto refuse = [&](std::string_view what) {
+    return Error(Errc::invalid_argument, what, file.string(), "nothing was written");
+  };
+  const bool floats = mesh.scalar == Scalar::float32 || format == Format::stl;
+  const double largest = floats ? double{std::numeric_limits<float>::max()} : std::numeric_limits<double>::max();
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+    for (int a = 0; a < 3; ++a)
+      if (!(std::abs(mesh.positions[v][a]) <= largest))
+        throw refuse(fmt::format("vertex {} has a coordinate that {} cannot hold", v, floats ? "float32" : "a file"));
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    for (const std::uint32_t v : mesh.faces[f])
+      if (v >= mesh.positions.size()) throw refuse(fmt::format("face {} names vertex {}, which is none", f, v));
+  if (!mesh.vertex_ids.empty() && mesh.vertex_ids.size() != mesh.positions.size())
+    throw refuse(fmt::format("{} ids for {} vertices", mesh.vertex_ids.size(), mesh.positions.size()));
+  if (!mesh.face_colors.empty() && mesh.face_colors.size() != mesh.faces.size())
+    throw refuse(fmt::format("{} colours for {} faces", mesh.face_colors.size(), mesh.faces.size()));
+}
+
 }  // namespace
 
 void write_mesh(const std::filesystem::path& file, Format format, const MeshOutput& mesh, bool ascii) {
+  check(file, format, mesh);
   NewFile out(file);
   switch (format) {
     case Format::ply:

@@ -324,7 +324,8 @@ class BodyReader {
     mesh_.positions.reserve(element.count);
     if (ids) mesh_.vertex_ids.reserve(element.count);
     for (const Property& p : element.properties)
-      if (p.role <= Role::z && p.type == Type::float64) mesh_.scalar = Scalar::float64;
+      if (p.role <= Role::z && (p.type == Type::float64 || p.type == Type::int32 || p.type == Type::uint32))
+        mesh_.scalar = Scalar::float64;
     for (std::uint64_t i = 0; i < element.count; ++i) {
       Point position;
       std::uint64_t high = 0, low = 0;

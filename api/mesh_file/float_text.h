@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string_view>
+
+namespace ramcdb::mesh_file {
+
+/// Whether the float32 nearest to a number written in text is that number to the last digit given: so it is for what
+/// was printed from a float32, with however many digits, and it is not for most of what was printed from a double.
+/// `value` is the finite double nearest to `text`.
+[[nodiscard]] bool float_holds(std::string_view text, double value);
+
+/// The float32 nearest to `value`, of which float_holds was true.
+[[nodiscard]] double nearest_float(double value);
+
+}  // namespace ramcdb::mesh_file

@@ -1,0 +1,199 @@
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <clocale>
+#include <cmath>
+#include <limits>
+#include <locale>
+
+#include "ramcdb/error.h"
+#include "tests/api/mesh_file/files.h"
+#include "tests/support/meshes.h"
+
+/// What the writer wrote, the reader reads: every bit of every coordinate.
+namespace ramcdb::test {
+namespace {
+
+using mesh_file::Format;
+using mesh_file::MeshData;
+using mesh_file::MeshOutput;
+using mesh_file::Scalar;
+
+/// Numbers that are hard to print: small, large, with all digits, signed zeros; floats when asked.
+TestMesh hard_numbers(Scalar scalar) {
+  TestMesh mesh = terrain(20, 30);
+  std::uint64_t state = 1;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    for (int a = 0; a < 3; ++a) {
+      state = state * 6364136223846793005U + 1442695040888963407U;
+      const double any = std::bit_cast<double>((state & 0x800fffffffffffffU) | (0x3c0 + (state >> 20) % 0x80) << 52);
+      double& value = mesh.positions[i][a];
+      if (i % 2) value = any;
+      if (scalar == Scalar::float32) value = static_cast<float>(value);
+    }
+  using F = std::numeric_limits<float>;
+  using D = std::numeric_limits<double>;
+  if (scalar == Scalar::float32) {
+    mesh.positions[0] = {-0.0, F::denorm_min(), F::max()};
+    mesh.positions[1] = {0.0, -F::min(), -F::max()};
+  } else {
+    mesh.positions[0] = {-0.0, D::denorm_min(), D::max()};
+    mesh.positions[1] = {0.0, -D::min(), -D::max()};
+  }
+  return mesh;
+}
+
+MeshData write_and_read(const std::string& name, const MeshOutput& out, bool ascii) {
+  const ScratchFolder scratch;
+  const auto file = scratch.file(name);
+  mesh_file::write_mesh(file, mesh_file::format_of(file), out, ascii);
+  return mesh_file::read_mesh(file);
+}
+
+struct Case {
+  const char* name;
+  Scalar scalar;
+  bool ascii;
+};
+
+class RoundTrip : public testing::TestWithParam<Case> {};
+
+TEST_P(RoundTrip, KeepsEveryBit) {
+  const auto [name, scalar, ascii] = GetParam();
+  const TestMesh mesh = hard_numbers(scalar);
+  const MeshData read = write_and_read(name, {mesh.positions, mesh.faces, scalar, {}, {}}, ascii);
+  EXPECT_TRUE(is_sound(read));
+  EXPECT_EQ(bits(read.positions), bits(mesh.positions));
+  EXPECT_EQ(triangles(read), mesh.faces);
+  EXPECT_TRUE(read.face_sizes.empty());
+  EXPECT_EQ(read.scalar, scalar);
+  EXPECT_TRUE(read.dropped.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Files, RoundTrip,
+    testing::Values(Case{"binary_float.ply", Scalar::float32, false}, Case{"binary_double.ply", Scalar::float64, false},
+                    Case{"ascii_float.ply", Scalar::float32, true}, Case{"ascii_double.ply", Scalar::float64, true},
+                    Case{"float.obj", Scalar::float32, false}, Case{"double.obj", Scalar::float64, false},
+                    Case{"float.off", Scalar::float32, false}, Case{"double.off", Scalar::float64, false}),
+    [](const auto& test) {
+      std::string name = test.param.name;
+      name[name.size() - 4] = '_';
+      return name;
+    });
+
+TEST(RoundTripStl, KeepsEveryCorner) {
+  const TestMesh mesh = hard_numbers(Scalar::float32);
+  const MeshData read = write_and_read("a.stl", {mesh.positions, mesh.faces, Scalar::float32, {}, {}}, false);
+  ASSERT_EQ(read.face_count(), mesh.faces.size());
+  EXPECT_TRUE(read.soup);
+  EXPECT_TRUE(read.dropped.empty());
+  std::vector<Point> expected;
+  for (const Triangle& t : mesh.faces)
+    for (const std::uint32_t v : t) expected.push_back(mesh.positions[v]);
+  EXPECT_EQ(bits(read.positions), bits(expected));
+}
+
+TEST(RoundTripIds, EveryBitOfAnIdStays) {
+  const TestMesh mesh = boxes(3);
+  std::vector<std::uint64_t> ids(mesh.positions.size());
+  for (std::size_t v = 0; v < ids.size(); ++v) ids[v] = 0xfedcba9876543210U * (v + 1);
+  ids[0] = 0;
+  ids[1] = ~std::uint64_t{0};
+  for (const bool ascii : {false, true}) {
+    const MeshData read = write_and_read("ids.ply", {mesh.positions, mesh.faces, Scalar::float64, ids, {}}, ascii);
+    EXPECT_EQ(read.vertex_ids, ids);
+    EXPECT_EQ(bits(read.positions), bits(mesh.positions));
+    EXPECT_EQ(triangles(read), mesh.faces);
+  }
+}
+
+TEST(RoundTripColors, FaceColoursAreWrittenAndNamedAsDropped) {
+  const TestMesh mesh = boxes(2);
+  const std::vector<mesh_file::FaceColor> colors(mesh.faces.size(), {1, 200, 255});
+  const MeshOutput out{mesh.positions, mesh.faces, Scalar::float32, {}, colors};
+  for (const bool ascii : {false, true}) {
+    const MeshData read = write_and_read("colors.ply", out, ascii);
+    EXPECT_EQ(triangles(read), mesh.faces);
+    for (const char* name : {"red", "green", "blue"})
+      EXPECT_EQ(dropped(read, std::string("face property '") + name + "' (uchar)"), mesh.faces.size());
+  }
+  const MeshData off = write_and_read("colors.off", out, false);
+  EXPECT_EQ(triangles(off), mesh.faces);
+  EXPECT_EQ(dropped(off, "face colours"), mesh.faces.size());
+}
+
+/// A locale with a decimal comma, also where none is installed.
+class CommaLocale {
+ public:
+  CommaLocale() {
+    struct Comma : std::numpunct<char> {
+      char do_decimal_point() const override { return ','; }
+      char do_thousands_sep() const override { return '.'; }
+      std::string do_grouping() const override { return "\3"; }
+    };
+    std::locale::global(std::locale(std::locale::classic(), new Comma));
+    for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "de_DE", "fr_FR.UTF-8"})
+      if (!installed_ && std::setlocale(LC_ALL, name)) installed_ = name;
+  }
+  ~CommaLocale() {
+    std::locale::global(std::locale::classic());
+    std::setlocale(LC_ALL, "C");
+  }
+  CommaLocale(const CommaLocale&) = delete;
+  CommaLocale& operator=(const CommaLocale&) = delete;
+  [[nodiscard]] const char* installed() const { return installed_; }
+
+ private:
+  const char* installed_ = nullptr;
+};
+
+TEST(RoundTripLocale, DecimalCommaDoesNotMatter) {
+  const CommaLocale locale;
+  if (!locale.installed()) std::printf("no C locale with a decimal comma is installed: only the C++ one was set\n");
+  const TestMesh mesh = hard_numbers(Scalar::float64);
+  for (const char* name : {"a.ply", "a.obj", "a.off"}) {
+    const MeshData read = write_and_read(name, {mesh.positions, mesh.faces, Scalar::float64, {}, {}}, true);
+    EXPECT_EQ(bits(read.positions), bits(mesh.positions)) << name;
+    EXPECT_EQ(triangles(read), mesh.faces) << name;
+  }
+}
+
+TEST(Writer, RefusesCoordinatesThatTheFileCannotHold) {
+  const ScratchFolder scratch;
+  const auto file = scratch.file("large.stl");
+  write_bytes(file, "what was there");
+  const std::vector<Triangle> faces{{0, 1, 2}};
+  for (const double wrong : {1e39, -1e300, std::nan(""), HUGE_VAL}) {
+    const std::vector<Point> positions{{0, 0, 0}, {1, 0, 0}, {0, wrong, 0}};
+    for (const Format format : {Format::ply, Format::obj, Format::off, Format::stl})
+      EXPECT_THROW(mesh_file::write_mesh(file, format, {positions, faces, Scalar::float32, {}, {}}), Error) << wrong;
+  }
+  EXPECT_EQ(read_bytes(file), "what was there");
+}
+
+TEST(Writer, LeavesNothingBehindWhereItCannotWrite) {
+  const ScratchFolder scratch;
+  const TestMesh mesh = boxes(1);
+  EXPECT_THROW(mesh_file::write_mesh(scratch.file("none") / "a.ply", Format::ply,
+                                     {mesh.positions, mesh.faces, Scalar::float32, {}, {}}),
+               Error);
+  std::filesystem::create_directory(scratch.file("a.ply"));
+  EXPECT_THROW(
+      mesh_file::write_mesh(scratch.file("a.ply"), Format::ply, {mesh.positions, mesh.faces, Scalar::float32, {}, {}}),
+      Error);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch.folder()), {}), 1);
+}
+
+TEST(Writer, ReplacesTheFileAndLeavesNoOther) {
+  const ScratchFolder scratch;
+  const TestMesh mesh = boxes(1);
+  const auto file = scratch.file("a.ply");
+  write_bytes(file, "older");
+  mesh_file::write_mesh(file, Format::ply, {mesh.positions, mesh.faces, Scalar::float32, {}, {}});
+  EXPECT_EQ(mesh_file::read_mesh(file).face_count(), mesh.faces.size());
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch.folder()), {}), 1);
+}
+
+}  // namespace
+}  // namespace ramcdb::test
