@@ -39,10 +39,10 @@ class Verifier {
       report_.problems.push_back({p.kind, p.key ? fmt::format("{}", p.key->mesh.value) : "",
                                   p.key ? object_name(*p.key) : "", p.key ? p.key->version : VersionId(), p.text});
     });
-    const auto versions = store_->history(VersionId(), ~std::size_t{0});
+    const auto versions = store_->all_versions();
     for (std::size_t i = 0; i < versions.size(); ++i) {
       progress("versions", static_cast<double>(i) / static_cast<double>(versions.size()));
-      for (const db::MeshRoot& root : store_->roots(versions[i].id)) check_root(versions[i].id, root);
+      for (const db::MeshRoot& root : store_->roots(versions[i])) check_root(versions[i], root);
     }
     return std::move(report_);
   }

@@ -5,38 +5,11 @@
 
 #include "chartify/chartify.h"
 #include "chartify/half_edge_twins.h"
-#include "chartify/hilbert.h"
+#include "chartify/hilbert_cells.h"
+#include "chartify/partition.h"
 
 namespace ramcdb::chartify {
 namespace {
-
-constexpr int kHilbertBits = 16;
-constexpr std::uint32_t kNone = ~std::uint32_t{0};
-
-/// Maps sums of three positions to cells of the Hilbert cube: all axes by the same shift, so that cells are cubes.
-class Cells {
- public:
-  explicit Cells(const IndexedMesh& mesh) {
-    LatticeBox box;
-    for (const LatticePoint p : mesh.positions) box.add(p);
-    std::int64_t extent = 1;
-    for (int a = 0; a < 3 && !box.empty(); ++a) {
-      low_[static_cast<std::size_t>(a)] = 3 * std::int64_t{box.lo[a]};
-      extent = std::max(extent, 3 * (std::int64_t{box.hi[a]} - box.lo[a]) + 1);
-    }
-    while ((extent - 1) >> shift_ >> kHilbertBits) ++shift_;
-  }
-
-  [[nodiscard]] std::uint64_t key(const std::array<std::int64_t, 3>& sum) const {
-    std::array<std::uint32_t, 3> cell{};
-    for (std::size_t a = 0; a < 3; ++a) cell[a] = static_cast<std::uint32_t>((sum[a] - low_[a]) >> shift_);
-    return hilbert_key(cell, kHilbertBits);
-  }
-
- private:
-  std::array<std::int64_t, 3> low_{};
-  int shift_ = 0;
-};
 
 /// What tells a corner of a face apart from others, by positions alone: its own, and that of the apex across the edge
 /// which begins there.
@@ -52,15 +25,12 @@ class Sorter {
 
   CanonicalMesh run() {
     const std::size_t faces = mesh_.faces.size();
-    const Cells cells(mesh_);
+    const HilbertCells cells(mesh_);
     turn_.resize(faces);
     key_.resize(faces);
     for (std::uint32_t f = 0; f < faces; ++f) {
       turn_[f] = smallest_turn(f);
-      std::array<std::int64_t, 3> sum{};
-      for (const std::uint32_t v : mesh_.faces[f])
-        for (int a = 0; a < 3; ++a) sum[static_cast<std::size_t>(a)] += mesh_.positions[v][a];
-      key_[f] = cells.key(sum);
+      key_[f] = cells.key_of_face(f);
     }
     CanonicalMesh out;
     out.source_face.resize(faces);
@@ -111,7 +81,7 @@ class Sorter {
   }
 
   /// Vertices in the order in which the sorted faces first name them; isolated ones behind, along the curve.
-  void number_vertices(CanonicalMesh& out, const Cells& cells) const {
+  void number_vertices(CanonicalMesh& out, const HilbertCells& cells) const {
     std::vector<std::uint32_t> to(mesh_.positions.size(), kNone);
     const auto number = [&](std::uint32_t v) {
       if (to[v] == kNone) {
@@ -129,10 +99,7 @@ class Sorter {
     std::vector<std::uint32_t> isolated;
     for (std::uint32_t v = 0; v < to.size(); ++v)
       if (to[v] == kNone) isolated.push_back(v);
-    const auto rank = [&](std::uint32_t v) {
-      const LatticePoint p = mesh_.positions[v];
-      return std::tuple(cells.key({3 * std::int64_t{p.x}, 3 * std::int64_t{p.y}, 3 * std::int64_t{p.z}}), p, v);
-    };
+    const auto rank = [&](std::uint32_t v) { return std::tuple(cells.key_of_vertex(v), mesh_.positions[v], v); };
     std::sort(isolated.begin(), isolated.end(), [&](std::uint32_t a, std::uint32_t b) { return rank(a) < rank(b); });
     for (const std::uint32_t v : isolated) number(v);
     out.mesh.positions.reserve(out.source_vertex.size());

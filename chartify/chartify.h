@@ -37,8 +37,8 @@ enum class Method {
 struct Options {
   std::uint32_t target_faces = 5000;
   Method method = Method::refined;
-  unsigned threads = 1;                                  ///< changes the time, never the result
-  std::function<void(double done)> progress = nullptr;   ///< 0..1; may throw to cancel
+  unsigned threads = 1;                                 ///< changes the time, never the result
+  std::function<void(double done)> progress = nullptr;  ///< 0..1; may throw to cancel
 };
 
 /// Cuts a mesh into charts. REQUIRES: canonical order. Returns for every face the chart it belongs to, and for every

@@ -17,9 +17,9 @@ inline HalfEdge previous_in_face(HalfEdge h) { return h % 3 == 0 ? h + 2 : h - 1
 
 /// The half-edges of a mesh, grouped by the edge they lie on.
 struct EdgeGroups {
-  std::vector<std::uint32_t> edge_of;    ///< per half-edge
-  std::vector<std::uint32_t> first;      ///< per edge, and one more: where its half-edges begin in `half_edges`
-  std::vector<HalfEdge> half_edges;      ///< ascending within an edge
+  std::vector<std::uint32_t> edge_of;  ///< per half-edge
+  std::vector<std::uint32_t> first;    ///< per edge, and one more: where its half-edges begin in `half_edges`
+  std::vector<HalfEdge> half_edges;    ///< ascending within an edge
 
   [[nodiscard]] std::size_t edge_count() const { return first.size() - 1; }
 };

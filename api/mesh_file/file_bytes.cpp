@@ -56,6 +56,17 @@ FileBytes::~FileBytes() {
   if (data_) ::munmap(const_cast<char*>(data_), size_);
 }
 
+std::string shown(std::string_view word) {
+  constexpr std::size_t kMost = 40;
+  std::string text;
+  for (const char c : word.substr(0, kMost))
+    if (c >= ' ' && c <= '~')
+      text += c;
+    else
+      text += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+  return text;
+}
+
 Error bad_line(const FileBytes& file, std::size_t line, std::string_view what) {
   return Error(Errc::invalid_argument, what, fmt::format("{}:{}", file.name(), line), kHowToGoOn);
 }
@@ -121,8 +132,8 @@ double TextScanner::parse_number(std::string_view text, std::string_view what) {
   double value = 0;
   const auto [end, error] = fast_float::from_chars(behind_plus(text), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size())
-    throw bad(fmt::format("{} is no number: '{}'", what, text.substr(0, 40)));
-  if (!std::isfinite(value)) throw bad(fmt::format("{} is not finite: '{}'", what, text.substr(0, 40)));
+    throw bad(fmt::format("{} is no number: '{}'", what, shown(text)));
+  if (!std::isfinite(value)) throw bad(fmt::format("{} is not finite: '{}'", what, shown(text)));
   if (!saw_doubles_) saw_doubles_ = !float_holds(text, value);
   return value;
 }
@@ -132,7 +143,7 @@ std::int64_t TextScanner::parse_integer(std::string_view text, std::string_view 
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(behind_plus(text), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size())
-    throw bad(fmt::format("{} is no whole number: '{}'", what, text.substr(0, 40)));
+    throw bad(fmt::format("{} is no whole number: '{}'", what, shown(text)));
   return value;
 }
 

@@ -34,6 +34,9 @@ class FileBytes {
 [[nodiscard]] Error bad_line(const FileBytes& file, std::size_t line, std::string_view what);
 [[nodiscard]] Error bad_byte(const FileBytes& file, std::size_t offset, std::string_view what);
 
+/// A word of a file for messages and names: its first 40 bytes, what is not printable ASCII as \xNN.
+[[nodiscard]] std::string shown(std::string_view word);
+
 /// One reader per format; `read_mesh` does the checks that all share.
 void read_ply(const FileBytes& file, MeshData& mesh, const Progress& progress);
 void read_obj(const FileBytes& file, MeshData& mesh, const Progress& progress);

@@ -77,7 +77,7 @@ class ObjReader {
     else if (keyword == "g" || keyword == "o")
       dropped_.add(fmt::format("groups ({})", keyword));
     else
-      dropped_.add(fmt::format("'{}' lines", keyword.substr(0, 40)));
+      dropped_.add(fmt::format("'{}' lines", shown(keyword)));
   }
 
   const FileBytes& file_;

@@ -26,7 +26,7 @@ Layout parse_keyword(const TextScanner& scan, std::string_view keyword) {
     else if (c == 'N')
       layout.normal = true;
     else
-      throw scan.bad(fmt::format("'{}' is a kind of OFF that is not read", keyword));
+      throw scan.bad(fmt::format("'{}' is a kind of OFF that is not read", shown(keyword)));
   }
   return layout;
 }

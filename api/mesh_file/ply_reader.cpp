@@ -112,7 +112,7 @@ class HeaderReader {
     } else if (keyword == "element") {
       Element element;
       element.name = scan_.word();
-      if (header_.find(element.name)) throw scan_.bad(fmt::format("element '{}' stands twice", element.name));
+      if (header_.find(element.name)) throw scan_.bad(fmt::format("element '{}' stands twice", shown(element.name)));
       const std::int64_t count = scan_.integer("the count of an element");
       if (count < 0) throw scan_.bad("the count of an element is negative");
       element.count = static_cast<std::uint64_t>(count);
@@ -120,7 +120,7 @@ class HeaderReader {
     } else if (keyword == "property") {
       read_property();
     } else if (!keyword.empty() && keyword != "comment" && keyword != "obj_info") {
-      throw scan_.bad(fmt::format("unknown header line '{}'", keyword.substr(0, 40)));
+      throw scan_.bad(fmt::format("unknown header line '{}'", shown(keyword)));
     }
   }
 
@@ -133,13 +133,13 @@ class HeaderReader {
     else if (name == "binary_big_endian")
       header_.encoding = Encoding::big;
     else
-      throw scan_.bad(fmt::format("unknown encoding '{}'", name.substr(0, 40)));
+      throw scan_.bad(fmt::format("unknown encoding '{}'", shown(name)));
   }
 
   Type read_type() {
     const std::string_view name = scan_.word();
     const auto type = type_of(name);
-    if (!type) throw scan_.bad(fmt::format("unknown type '{}'", name.substr(0, 40)));
+    if (!type) throw scan_.bad(fmt::format("unknown type '{}'", shown(name)));
     return *type;
   }
 
@@ -154,13 +154,14 @@ class HeaderReader {
       first = scan_.word();
     }
     const auto type = type_of(first);
-    if (!type) throw scan_.bad(fmt::format("unknown type '{}'", first.substr(0, 40)));
+    if (!type) throw scan_.bad(fmt::format("unknown type '{}'", shown(first)));
     p.type = *type;
     p.type_name = first;
     p.name = scan_.word();
     if (p.name.empty()) throw scan_.bad("a property has no name");
     p.role = role_of(element, p);
-    if (p.role != Role::none && element.has(p.role)) throw scan_.bad(fmt::format("property '{}' stands twice", p.name));
+    if (p.role != Role::none && element.has(p.role))
+      throw scan_.bad(fmt::format("property '{}' stands twice", shown(p.name)));
     element.properties.push_back(std::move(p));
   }
 
@@ -176,7 +177,7 @@ class HeaderReader {
     const Element* strips = header_.find("tristrips");
     if (strips && strips->count) throw scan_.bad("triangle strips are not read: convert them to faces");
     for (const Element& e : header_.elements)
-      if (e.count && e.properties.empty()) throw scan_.bad(fmt::format("element '{}' has no property", e.name));
+      if (e.count && e.properties.empty()) throw scan_.bad(fmt::format("element '{}' has no property", shown(e.name)));
   }
 
   void check_counts() const {
@@ -186,7 +187,7 @@ class HeaderReader {
       // The last number of a text file needs no blank behind it.
       if (each && e.count > (left + 1) / each)
         throw bad_byte(file_, header_.size,
-                       fmt::format("the file is cut off: no room for {} of '{}'", e.count, e.name));
+                       fmt::format("the file is cut off: no room for {} of '{}'", e.count, shown(e.name)));
       left -= std::min<std::size_t>(left, e.count * each);
     }
   }
@@ -309,14 +310,14 @@ class BodyReader {
  private:
   void name_dropped(const Element& element) {
     if (element.name != "vertex" && element.name != "face") {
-      dropped_.add(fmt::format("element '{}'", element.name), element.count);
+      dropped_.add(fmt::format("element '{}'", shown(element.name)), element.count);
       return;
     }
     for (const Property& p : element.properties)
       if (p.role == Role::none)
-        dropped_.add(
-            fmt::format("{} property '{}' ({}{})", element.name, p.name, p.count_type ? "list of " : "", p.type_name),
-            element.count);
+        dropped_.add(fmt::format("{} property '{}' ({}{})", element.name, shown(p.name), p.count_type ? "list of " : "",
+                                 p.type_name),
+                     element.count);
   }
 
   void read_vertices(const Element& element) {

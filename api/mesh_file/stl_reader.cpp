@@ -88,7 +88,7 @@ void read_ascii(const FileBytes& file, MeshData& mesh, const Progress& progress)
     } else if (keyword == "solid" || keyword == "endsolid") {
       in_solid = keyword == "solid";
     } else if (!keyword.empty() && keyword != "outer" && keyword != "endloop") {
-      throw scan.bad(fmt::format("'{}' is not STL", keyword));
+      throw scan.bad(fmt::format("'{}' is not STL", shown(keyword)));
     }
   }
   if (in_facet || in_solid) throw scan.bad("the file is cut off: no 'endsolid'");

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "chartify/half_edge_twins.h"
+
+namespace ramcdb::chartify {
+
+/// A mesh cut open along the borders of its charts: faces of one chart are glued over edges that are not cut, and the
+/// corners of glued faces around a vertex form fans. A fan is what a chart takes for a vertex; cut edges run between
+/// open fans, and the half-edges on them form border loops with their chart on the left.
+class CutSurface {
+ public:
+  /// Cuts every edge that two faces of one chart do not pass in opposite directions, and then as many more as it takes
+  /// until vertices of several fans have open ones only and no loop has two vertices.
+  CutSurface(const IndexedMesh& mesh, const std::vector<std::uint32_t>& chart_of_face);
+
+  [[nodiscard]] bool is_border(HalfEdge h) const { return mate_[h] == kNoTwin; }
+  /// The border half-edge that follows another on its loop.
+  [[nodiscard]] HalfEdge next_on_border(HalfEdge h) const;
+  /// The fan that the corner at the start of a half-edge belongs to.
+  [[nodiscard]] std::uint32_t fan_of(HalfEdge h) const { return fan_of_[h]; }
+  [[nodiscard]] std::size_t fan_count() const { return fans_.size(); }
+  [[nodiscard]] bool is_closed(std::uint32_t fan) const { return fans_[fan].closed; }
+  [[nodiscard]] std::uint32_t edge_of(HalfEdge h) const { return edges_.edge_of[h]; }
+  [[nodiscard]] std::size_t edge_count() const { return edges_.edge_count(); }
+  [[nodiscard]] std::uint32_t start_of(HalfEdge h) const { return mesh_.faces[face_of(h)][h % 3]; }
+  [[nodiscard]] std::uint32_t end_of(HalfEdge h) const { return start_of(next_in_face(h)); }
+
+ private:
+  struct Fan {
+    HalfEdge first;  ///< the one farthest clockwise, or any of a closed fan
+    bool closed;
+  };
+
+  void find_fans();
+  /// Both return how many edges they cut.
+  std::size_t open_fans_of_split_vertices();
+  std::size_t lengthen_short_loops();
+  void cut(HalfEdge h);
+
+  const IndexedMesh& mesh_;
+  EdgeGroups edges_;
+  std::vector<HalfEdge> mate_;  ///< the half-edge glued to this one
+  std::vector<std::uint32_t> fan_of_;
+  std::vector<Fan> fans_;
+};
+
+}  // namespace ramcdb::chartify

@@ -1,0 +1,161 @@
+#include "chartify/growth.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "chartify/hilbert_cells.h"
+
+namespace ramcdb::chartify {
+namespace {
+
+__extension__ using Wide = unsigned __int128;
+
+// What a chart pays for each further face, in 1/256; the balance term makes big charts pay more.
+constexpr std::uint32_t kFirstWeight = 16 * 256, kSmallestWeight = 5 * 256, kLargestWeight = 48 * 256;
+constexpr std::size_t kBuckets = 1024;  // more than any weight, so that the ring never laps itself
+
+/// A priority queue for keys that never fall behind the last popped one by more than the ring; last in, first out
+/// among equal keys.
+class BucketQueue {
+ public:
+  struct Entry {
+    std::uint32_t face, chart;
+  };
+
+  void push(std::uint64_t key, Entry entry) {
+    ring_[key % kBuckets].push_back(entry);
+    ++size_;
+  }
+  [[nodiscard]] bool empty() const { return size_ == 0; }
+  Entry pop(std::uint64_t& key) {
+    while (ring_[key_ % kBuckets].empty()) ++key_;
+    key = key_;
+    std::vector<Entry>& bucket = ring_[key_ % kBuckets];
+    const Entry entry = bucket.back();
+    bucket.pop_back();
+    --size_;
+    return entry;
+  }
+
+ private:
+  std::array<std::vector<Entry>, kBuckets> ring_;
+  std::uint64_t key_ = 0;
+  std::size_t size_ = 0;
+};
+
+class Grower {
+ public:
+  Grower(const IndexedMesh& mesh, const Neighbours& neighbours, const Components& components, std::uint32_t target)
+      : mesh_(mesh), neighbours_(neighbours), components_(components), target_(target) {
+    choose_seeds();
+  }
+
+  void grow() {
+    partition_.chart_of_face.assign(mesh_.faces.size(), kNone);
+    partition_.sizes.assign(seeds_.size(), 0);
+    std::vector<std::uint64_t> best(mesh_.faces.size(), ~std::uint64_t{0});
+    BucketQueue queue;
+    for (std::uint32_t c = 0; c < seeds_.size(); ++c) queue.push(0, {seeds_[c], c});
+    while (!queue.empty()) {
+      std::uint64_t key = 0;
+      const auto [face, chart] = queue.pop(key);
+      if (partition_.chart_of_face[face] != kNone) continue;
+      partition_.chart_of_face[face] = chart;
+      ++partition_.sizes[chart];
+      const std::uint64_t next_key = key + weights_[chart] / 256;
+      for (std::size_t e = 3 * std::size_t{face}; e < 3 * std::size_t{face} + 3; ++e) {
+        const std::uint32_t g = neighbours_[e];
+        if (g == kNone || partition_.chart_of_face[g] != kNone || next_key >= best[g]) continue;
+        best[g] = next_key;
+        queue.push(next_key, {g, chart});
+      }
+    }
+  }
+
+  void move_seeds() {
+    struct Mean {
+      std::array<std::int64_t, 3> sum{};
+      Wide nearest = ~Wide{0};
+    };
+    std::vector<Mean> means(seeds_.size());
+    for (std::uint32_t f = 0; f < mesh_.faces.size(); ++f) {
+      if (partition_.chart_of_face[f] == kNone) continue;
+      const auto sum = corner_sum(mesh_, f);
+      for (std::size_t a = 0; a < 3; ++a) means[partition_.chart_of_face[f]].sum[a] += sum[a];
+    }
+    for (std::uint32_t f = 0; f < mesh_.faces.size(); ++f) {
+      const std::uint32_t chart = partition_.chart_of_face[f];
+      if (chart == kNone) continue;
+      const auto sum = corner_sum(mesh_, f);
+      Wide distance = 0;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const std::int64_t d = partition_.sizes[chart] * sum[a] - means[chart].sum[a];
+        const auto magnitude = static_cast<Wide>(d < 0 ? -d : d);
+        distance += magnitude * magnitude;
+      }
+      if (distance >= means[chart].nearest) continue;
+      means[chart].nearest = distance;
+      seeds_[chart] = f;
+    }
+  }
+
+  void balance() {
+    for (std::size_t c = 0; c < seeds_.size(); ++c) {
+      const std::uint32_t component = components_.component_of_face[seeds_[c]];
+      const double share = static_cast<double>(partition_.sizes[c]) * charts_in(component) /
+                           static_cast<double>(components_.sizes[component]);
+      const double factor = std::clamp(std::sqrt(share), 0.7, 1.4);
+      const auto weight = static_cast<std::uint32_t>(static_cast<double>(weights_[c]) * factor + 0.5);
+      weights_[c] = std::clamp(weight, kSmallestWeight, kLargestWeight);
+    }
+  }
+
+  Partition take() { return std::move(partition_); }
+
+ private:
+  [[nodiscard]] std::uint32_t charts_in(std::uint32_t component) const {
+    const std::uint32_t size = components_.sizes[component];
+    if (2 * std::uint64_t{size} < target_) return 0;
+    return std::max(1U, static_cast<std::uint32_t>((2 * std::uint64_t{size} + target_) / (2 * std::uint64_t{target_})));
+  }
+
+  /// Runs of equal length along the faces of a component, which lie along the Hilbert curve; the middle of each.
+  void choose_seeds() {
+    std::vector<std::uint32_t> seen(components_.sizes.size(), 0);
+    for (std::uint32_t f = 0; f < mesh_.faces.size(); ++f) {
+      const std::uint32_t component = components_.component_of_face[f];
+      const std::uint64_t size = components_.sizes[component], count = charts_in(component);
+      const std::uint64_t at = seen[component]++;
+      if (count == 0) continue;
+      const std::uint64_t run = at * count / size;
+      const std::uint64_t begin = (run * size + count - 1) / count, end = ((run + 1) * size + count - 1) / count;
+      if (at == begin + (end - begin) / 2) seeds_.push_back(f);
+    }
+    weights_.assign(seeds_.size(), kFirstWeight);
+  }
+
+  const IndexedMesh& mesh_;
+  const Neighbours& neighbours_;
+  const Components& components_;
+  std::uint32_t target_;
+  std::vector<std::uint32_t> seeds_, weights_;
+  Partition partition_;
+};
+
+}  // namespace
+
+Partition grow_charts(const IndexedMesh& mesh, const Neighbours& neighbours, const Components& components,
+                      std::uint32_t target, int iterations, const Progress& progress) {
+  Grower grower(mesh, neighbours, components, target);
+  grower.grow();
+  for (int i = 0; i < iterations; ++i) {
+    if (progress) progress(static_cast<double>(i + 1) / (iterations + 1));
+    grower.move_seeds();
+    grower.balance();
+    grower.grow();
+  }
+  return grower.take();
+}
+
+}  // namespace ramcdb::chartify

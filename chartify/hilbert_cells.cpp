@@ -1,0 +1,45 @@
+#include "chartify/hilbert_cells.h"
+
+#include <algorithm>
+
+#include "chartify/hilbert.h"
+
+namespace ramcdb::chartify {
+namespace {
+
+constexpr int kBits = 16;
+
+}  // namespace
+
+std::array<std::int64_t, 3> corner_sum(const IndexedMesh& mesh, std::uint32_t face) {
+  std::array<std::int64_t, 3> sum{};
+  for (const std::uint32_t v : mesh.faces[face])
+    for (std::size_t a = 0; a < 3; ++a) sum[a] += mesh.positions[v][static_cast<int>(a)];
+  return sum;
+}
+
+HilbertCells::HilbertCells(const IndexedMesh& mesh) : mesh_(mesh) {
+  LatticeBox box;
+  for (const LatticePoint p : mesh.positions) box.add(p);
+  if (box.empty()) return;
+  std::int64_t extent = 1;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<int>(a);
+    low_[a] = 3 * std::int64_t{box.lo[axis]};
+    extent = std::max(extent, 3 * (std::int64_t{box.hi[axis]} - box.lo[axis]) + 1);
+  }
+  while ((extent - 1) >> shift_ >> kBits) ++shift_;
+}
+
+std::uint64_t HilbertCells::key_of_vertex(std::uint32_t vertex) const {
+  const LatticePoint p = mesh_.positions[vertex];
+  return key({3 * std::int64_t{p.x}, 3 * std::int64_t{p.y}, 3 * std::int64_t{p.z}});
+}
+
+std::uint64_t HilbertCells::key(const std::array<std::int64_t, 3>& sum) const {
+  std::array<std::uint32_t, 3> cell{};
+  for (std::size_t a = 0; a < 3; ++a) cell[a] = static_cast<std::uint32_t>((sum[a] - low_[a]) >> shift_);
+  return hilbert_key(cell, kBits);
+}
+
+}  // namespace ramcdb::chartify

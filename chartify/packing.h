@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "chartify/partition.h"
+
+namespace ramcdb::chartify {
+
+/// Puts the faces of no chart, whole components of them, into charts of up to `target` faces along the Hilbert curve.
+void pack_small_components(const Components& components, std::uint32_t target, Partition& partition);
+
+/// Gives each isolated vertex to the chart of the face before it on the Hilbert curve, and makes charts of their own
+/// where very many would come to one. Returns a chart for each, in the order of the mesh's isolated vertices.
+/// REQUIRES: canonical order, every face in a chart.
+[[nodiscard]] std::vector<std::uint32_t> place_isolated_vertices(const IndexedMesh& mesh, std::uint32_t target,
+                                                                 Partition& partition);
+
+}  // namespace ramcdb::chartify
