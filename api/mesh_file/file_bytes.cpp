@@ -91,8 +91,8 @@ bool TextScanner::next_line(bool continued) {
     ++line_;
     if (progress_ && line_ % 65536 == 0) progress_(static_cast<double>(at_) / static_cast<double>(text.size()));
     while (!piece.empty() && is_blank(piece.back())) piece.remove_suffix(1);
-    const bool is_comment = joined_.empty() && !piece.empty() && piece.front() == '#';
-    const bool goes_on = continued && !is_comment && !piece.empty() && piece.back() == '\\' && at_ < text.size();
+    const bool goes_on =
+        continued && !piece.empty() && piece.back() == '\\' && at_ < text.size() && !has_comment(piece);
     if (goes_on) piece.remove_suffix(1);
     if (!goes_on && joined_.empty()) {
       rest_ = piece;
@@ -104,6 +104,12 @@ bool TextScanner::next_line(bool continued) {
       return true;
     }
   }
+}
+
+bool TextScanner::has_comment(std::string_view piece) const {
+  for (std::size_t i = 0; comment && i < piece.size(); ++i)
+    if (piece[i] == comment && (i == 0 || is_blank(piece[i - 1]))) return true;
+  return false;
 }
 
 std::string_view TextScanner::word() {

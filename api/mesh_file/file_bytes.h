@@ -51,7 +51,7 @@ class TextScanner {
                        const Progress& progress = {});
 
   /// Goes on to the next line; false at the end of the file. `continued`: a backslash at its end joins the next line,
-  /// unless it is a comment, which may well end with the name of a folder.
+  /// unless in a comment, which may well end with the name of a folder.
   bool next_line(bool continued = false);
   /// The next word of the line; empty at its end.
   std::string_view word();
@@ -71,13 +71,15 @@ class TextScanner {
   /// Whether any number so far is one that float32 does not hold to its last digit.
   [[nodiscard]] bool saw_doubles() const { return saw_doubles_; }
   [[nodiscard]] Error bad(std::string_view what) const { return bad_line(file_, line_, what); }
-  /// Starts of comments, other than at the start of a line: everything behind it is skipped. 0: there are none.
+  /// What a word starts with that ends the line: the rest is a comment. 0: there are no comments.
   char comment = 0;
 
   double parse_number(std::string_view word, std::string_view what);
   std::int64_t parse_integer(std::string_view word, std::string_view what) const;
 
  private:
+  [[nodiscard]] bool has_comment(std::string_view piece) const;
+
   const FileBytes& file_;
   std::size_t at_ = 0;
   std::size_t line_ = 0;

@@ -1,0 +1,149 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "api/mesh_file/file_bytes.h"
+#include "tests/api/mesh_file/files.h"
+
+/// What the OBJ reader takes, skips and refuses.
+namespace ramcdb::test {
+namespace {
+
+using Indices = std::vector<std::uint32_t>;
+using mesh_file::Scalar;
+using testing::HasSubstr;
+
+const std::string kFour = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+TEST(Obj, FormsOfCorners) {
+  for (const char* face : {"f 1 2 3", "f 1/1 2/1 3/1", "f 1//1 2//2 3//3", "f 1/1/1 2/2/2 3/3/3", "f -4 -3 -2",
+                           "f -4/-1/-1 -3/-1/-1 -2//-1", "f\t1\t2\t3\t", "  f 1 2 3  ", "f +1 2 3", "f 1/ 2/ 3/",
+                           "f 1 2 3 # a triangle", "f 1 2 3 #and its end"}) {
+    const auto mesh = read_text("a.obj", kFour + face);
+    EXPECT_EQ(mesh.corners, (Indices{0, 1, 2})) << face;
+    EXPECT_TRUE(mesh.face_sizes.empty());
+    EXPECT_TRUE(mesh.dropped.empty()) << face;
+  }
+}
+
+TEST(Obj, NegativeIndicesCountFromTheNewestVertex) {
+  const auto mesh = read_text("a.obj", kFour + "f -4 -3 -2\nv 2 2 2\nf -1 -2 -5\n");
+  EXPECT_EQ(mesh.corners, (Indices{0, 1, 2, 4, 3, 0}));
+}
+
+TEST(Obj, PolygonsAndTriangles) {
+  const auto mesh = read_text("a.obj", kFour + "f 1 2 3 4\nf 1 2 3\n");
+  EXPECT_EQ(mesh.face_sizes, (Indices{4, 3}));
+  EXPECT_EQ(mesh.corners, (Indices{0, 1, 2, 3, 0, 1, 2}));
+}
+
+TEST(Obj, FacesMayStandBeforeTheirVertices) {
+  EXPECT_EQ(read_text("a.obj", "f 3 2 1\n" + kFour).corners, (Indices{2, 1, 0}));
+}
+
+TEST(Obj, LinesGoOnBehindABackslash) {
+  for (const char* end : {"\\\n", "\\\r\n", "\\ \n", " \\\n\\\n"}) {
+    const auto mesh = read_text("a.obj", kFour + "f 1 2" + end + " 3" + end + " 4\nf 1 2 3\nv 5 " + end + "5 5\n");
+    EXPECT_EQ(mesh.face_sizes, (Indices{4, 3}));
+    EXPECT_EQ(mesh.positions.back(), (Point{5, 5, 5}));
+  }
+}
+
+TEST(Obj, CommentsDoNotGoOn) {
+  const auto mesh = read_text("a.obj", "# from C:\\models\\\nv 0 0 0\n  # C:\\\nv 1 0 0 # C:\\\n#\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_EQ(mesh.positions.size(), 3U);
+}
+
+TEST(Obj, WhatIsDroppedIsNamed) {
+  const auto mesh = read_text("a.obj", kFour +
+                                           "vn 0 0 1\nvn 0 0 1\nvt 0 0\nusemtl red\nmtllib a.mtl\ng one\no two\ns off\n"
+                                           "l 1 2\nv 0 0 1 255 0 0\nv 0 0 2 1\nf 1 2 3\n");
+  EXPECT_EQ(mesh.positions.size(), 6U);
+  EXPECT_EQ(dropped(mesh, "normals (vn)"), 2U);
+  EXPECT_EQ(dropped(mesh, "texture coordinates (vt)"), 1U);
+  EXPECT_EQ(dropped(mesh, "materials (usemtl)"), 1U);
+  EXPECT_EQ(dropped(mesh, "materials (mtllib)"), 1U);
+  EXPECT_EQ(dropped(mesh, "groups (g)"), 1U);
+  EXPECT_EQ(dropped(mesh, "groups (o)"), 1U);
+  EXPECT_EQ(dropped(mesh, "'s' lines"), 1U);
+  EXPECT_EQ(dropped(mesh, "'l' lines"), 1U);
+  EXPECT_EQ(dropped(mesh, "vertex colours"), 1U);
+  EXPECT_EQ(dropped(mesh, "vertex weights"), 1U);
+  EXPECT_EQ(mesh.dropped.size(), 10U);
+}
+
+TEST(Obj, MadeUpKeywordsCostNeitherTimeNorMemory) {
+  std::string text = kFour;
+  for (int i = 0; i < 200000; ++i) text += fmt::format("x{}\n", i);
+  const auto mesh = read_text("a.obj", text);
+  EXPECT_EQ(mesh.dropped.size(), mesh_file::DroppedCounter::kMostNames + 1);
+  EXPECT_EQ(dropped(mesh, "things of other names"), 200000 - mesh_file::DroppedCounter::kMostNames);
+}
+
+TEST(Obj, NamesOfWhatIsDroppedArePrintable) {
+  const auto mesh = read_text("a.obj", kFour + "\xff\x1b[2J" + std::string(1000, 'x') + "\n");
+  EXPECT_EQ(dropped(mesh, "'\\xff\\x1b[2J" + std::string(35, 'x') + "' lines"), 1U);
+}
+
+/// The number type that a file with this coordinate has, and what became of it.
+std::pair<Scalar, double> type_and_value(const std::string& number) {
+  const auto mesh = read_text("a.obj", "v " + number + " 0 0\n");
+  return {mesh.scalar, mesh.positions[0].x};
+}
+
+TEST(Obj, NumbersAreFloat32WhenItHoldsThemToTheirLastDigit) {
+  const double tenth = static_cast<double>(0.1F);
+  for (const char* number :
+       {"0.1", ".1", "1e-1", "+0.1", "0.100000", "0.100000001", "0.10000000149011612", "1.0E-01", "10000000.1e-8"})
+    EXPECT_EQ(type_and_value(number), std::pair(Scalar::float32, tenth)) << number;
+  for (const char* number : {"0", "-0", "1", "16777216", "562345.1", "2097152.2", "3.4028235e38", "-3.4028235e+38",
+                             "0.333333", "0.3333333", "0.33333334", "0.333333343", "1e-45", "1e12"})
+    EXPECT_EQ(type_and_value(number).first, Scalar::float32) << number;
+  for (const char* number :
+       {"0.1000000000", "1000000000000", "562345.14", "16777217", "0.333333333", "0.3333333333333333", "3.41e38",
+        "1e300", "1e-300", "0.10000000000000001", "1.2345678e-42", "4.9e-324"})
+    EXPECT_EQ(type_and_value(number), std::pair(Scalar::float64, std::strtod(number, nullptr))) << number;
+}
+
+TEST(Obj, OneDoubleMakesAllDouble) {
+  const auto mesh = read_text("a.obj", "v 0.1 0.2 0.3\nv 562345.14 0 0\n");
+  EXPECT_EQ(mesh.scalar, Scalar::float64);
+  EXPECT_EQ(mesh.positions[0], (Point{0.1, 0.2, 0.3}));
+}
+
+TEST(Obj, WhatIsRefused) {
+  const std::pair<std::string, const char*> all[] = {
+      {"", "no vertex"},
+      {"# nothing\n", "no vertex"},
+      {"f 1 2 3\n", ":1): "},
+      {kFour + "f 1 2 5\nf 1 2 3\n", "vertex index 5 does not exist (4 vertices)"},
+      {kFour + "f 1 2 5\nf 1 2 3\n", ":5): "},
+      {kFour + "f 1 2 -5\n", ":5): "},
+      {kFour + "f 1 2 0\n", "vertex index 0"},
+      {kFour + "f 1 2 9223372036854775807\n", "does not exist"},
+      {kFour + "f 1 2 -9223372036854775808\n", "does not exist"},
+      {kFour + "f 1 2 9223372036854775808\n", "whole number"},
+      {kFour + "f 1 2 4294967296\n", "does not exist"},
+      {kFour + "f\n", "0 corners"},
+      {kFour + "f 1\n", "1 corners"},
+      {kFour + "f 1 2\n", "2 corners"},
+      {kFour + "f 1 2 /3\n", "missing"},
+      {kFour + "f 1 2 3.0\n", "whole number"},
+      {kFour + "f 1 2 +-3\n", "whole number"},
+      {"v 0 0\n", "missing"},
+      {"v 0 0 # 0\n", "missing"},
+      {"v 0 0 nan\n", "not finite"},
+      {"v 0 0 -inf\n", "not finite"},
+      {"v 0 0 1e999\n", "not finite"},
+      {"v 0 0 +-1\n", "no number"},
+      {"v 0 0 1,5\n", "no number: '1,5'"},
+      {"v 0 0 0x10\n", "no number"},
+      {"v 0 0 1.5f\n", "no number"},
+  };
+  for (const auto& [text, words] : all) EXPECT_THAT(refusal("a.obj", text), HasSubstr(words)) << text;
+}
+
+}  // namespace
+}  // namespace ramcdb::test
