@@ -29,11 +29,16 @@ std::uint32_t checked_border(std::span<const std::uint32_t> loop_sizes, std::siz
   return static_cast<std::uint32_t>(border);
 }
 
-/// A check that a lattice point may be one at all keeps all differences within int32.
+/// That a lattice point may be one at all keeps all differences within int32.
 bool on_lattice(LatticePoint p) {
   for (int a = 0; a < 3; ++a)
     if (p[a] < -kMaxLatticeCoordinate || p[a] > kMaxLatticeCoordinate) return false;
   return true;
+}
+
+void require_range(const LatticeBox& range, Errc blame) {
+  if (!on_lattice(range.lo) || !on_lattice(range.hi))
+    throw Error(blame, "the range of a chart lies beyond any lattice");
 }
 
 /// Costs that add up to the blob: the header takes what the stream's models do not account for, that is the bytes
@@ -101,7 +106,7 @@ ChartHeader header_of(const Chart& chart, std::uint32_t border, const LatticeBox
 /// Puts the pieces of a coded chart together; `payload` is what the coder wrote.
 EncodedChart assemble(ChartHeader header, Chart decoded, std::vector<std::uint32_t> source_vertex,
                       const Buffer& payload, const CoderTables& tables, const LatticeBox& range) {
-  header.check = chart_check(decoded, range, tables);
+  header.check = chart_check(header, decoded, range, tables);
   EncodedChart encoded;
   put_chart_header(encoded.blob, header);
   encoded.blob.insert(encoded.blob.end(), payload.begin(), payload.end());
@@ -155,6 +160,7 @@ EncodedChart encode_rawly(const Chart& chart, ChartHeader header, const CoderTab
 EncodedChart encode_chart(const Chart& chart, Profile profile, const CoderTables& tables, const LatticeBox& range) {
   if (profile != Profile::dense) throw Error(Errc::invalid_argument, "an unknown chart coding profile");
   require_chart(chart);
+  require_range(range, Errc::invalid_argument);
   const ChartHeader header = header_of(chart, chart.border_count(), range);
   std::optional<EncodedChart> dense = encode_densely(chart, header, tables, range);
   // Raw coding takes a byte per number at least; mostly that settles it.
@@ -176,7 +182,7 @@ void check_plausible(const ByteReader& reader, const ChartHeader& header) {
 
 /// Memory for what a stream of such a length usually holds; more comes with growth, when it is really there.
 ChartCounts usual_counts(const ByteReader& reader, ChartCounts declared) {
-  const auto usual = static_cast<std::uint32_t>(std::min<std::size_t>(64 * reader.rest().size(), kMaxChartFaces));
+  const auto usual = static_cast<std::uint32_t>(std::min<std::size_t>(16 * reader.rest().size(), kMaxChartFaces));
   return {std::min(declared.inner_vertices, usual), std::min(declared.faces, usual)};
 }
 
@@ -187,6 +193,7 @@ DecodedChart decode_chart(Bytes blob, std::span<const LatticePoint> border, std:
   if (checked_border(loop_sizes, border.size(), Errc::corrupt) != border.size() ||
       !std::all_of(border.begin(), border.end(), on_lattice))
     throw Error(Errc::corrupt, "the border of a chart does not fit its loops");
+  require_range(range, Errc::corrupt);
   ByteReader reader(blob, kBlob);
   const ChartHeader header = take_chart_header(reader, range);
 
@@ -208,7 +215,7 @@ DecodedChart decode_chart(Bytes blob, std::span<const LatticePoint> border, std:
     decoded.chart.positions = std::move(raw.positions);
     decoded.chart.faces = std::move(raw.faces);
   }
-  if (chart_check(decoded.chart, range, tables) != header.check)
+  if (chart_check(header, decoded.chart, range, tables) != header.check)
     reader.fail("is damaged, or was not coded with this border, table and range");
   return decoded;
 }

@@ -2,6 +2,10 @@
 
 #include <xxhash.h>
 
+#include <array>
+#include <memory>
+#include <new>
+
 namespace ramcdb::codec {
 
 namespace {
@@ -29,13 +33,8 @@ LatticeBox take_box(ByteReader& reader) {
   return box;
 }
 
-void put_point(Buffer& out, LatticePoint p) {
-  for (int a = 0; a < 3; ++a) put_fixed32(out, static_cast<std::uint32_t>(p[a]));
-}
-
-}  // namespace
-
-void put_chart_header(Buffer& out, const ChartHeader& header) {
+/// The header as far as the check.
+void put_fields(Buffer& out, const ChartHeader& header) {
   out.push_back(kChartFormat);
   out.push_back(static_cast<std::uint8_t>(header.coding));
   out.push_back(header.own_box ? kOwnBox : 0);
@@ -43,6 +42,42 @@ void put_chart_header(Buffer& out, const ChartHeader& header) {
   put_varint(out, header.counts.faces);
   if (header.own_box) put_box(out, header.box);
   if (header.coding == ChartCoding::dense) out.push_back(static_cast<std::uint8_t>(header.edge_exponent));
+}
+
+/// XXH3-64 of whole numbers, each as four bytes, lowest first.
+class WordHash {
+ public:
+  WordHash() : state_(XXH3_createState(), XXH3_freeState) {
+    if (!state_ || XXH3_64bits_reset(state_.get()) != XXH_OK) throw std::bad_alloc();
+  }
+
+  void add(std::uint32_t word) {
+    for (int shift = 0; shift < 32; shift += 8) bytes_[filled_++] = static_cast<std::uint8_t>(word >> shift);
+    if (filled_ == bytes_.size()) pass_on();
+  }
+  void add(LatticePoint p) {
+    for (int a = 0; a < 3; ++a) add(static_cast<std::uint32_t>(p[a]));
+  }
+  [[nodiscard]] std::uint64_t digest() {
+    pass_on();
+    return XXH3_64bits_digest(state_.get());
+  }
+
+ private:
+  void pass_on() {
+    (void)XXH3_64bits_update(state_.get(), bytes_.data(), filled_);
+    filled_ = 0;
+  }
+
+  std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_;
+  std::array<std::uint8_t, 4096> bytes_;
+  std::size_t filled_ = 0;
+};
+
+}  // namespace
+
+void put_chart_header(Buffer& out, const ChartHeader& header) {
+  put_fields(out, header);
   put_fixed32(out, header.check);
 }
 
@@ -70,22 +105,24 @@ ChartHeader take_chart_header(ByteReader& reader, const LatticeBox& range) {
   return header;
 }
 
-std::uint32_t chart_check(const Chart& chart, const LatticeBox& range, const CoderTables& tables) {
-  Buffer all;
-  all.reserve(4 * (chart.loop_sizes.size() + 3 * (chart.positions.size() + chart.faces.size())) + 4096);
-  put_fixed32(all, static_cast<std::uint32_t>(chart.loop_sizes.size()));
-  put_fixed32(all, static_cast<std::uint32_t>(chart.positions.size()));
-  for (const std::uint32_t size : chart.loop_sizes) put_fixed32(all, size);
-  for (const LatticePoint p : chart.positions) put_point(all, p);
+std::uint32_t chart_check(const ChartHeader& header, const Chart& chart, const LatticeBox& range,
+                          const CoderTables& tables) {
+  Buffer fields;
+  put_fields(fields, header);
+  WordHash hash;
+  for (const std::uint8_t field : fields) hash.add(field);
+  hash.add(static_cast<std::uint32_t>(chart.loop_sizes.size()));
+  for (const std::uint32_t size : chart.loop_sizes) hash.add(size);
+  for (const LatticePoint p : chart.positions) hash.add(p);
   for (const Triangle& face : chart.faces)
-    for (const std::uint32_t v : face) put_fixed32(all, v);
-  put_point(all, range.lo);
-  put_point(all, range.hi);
+    for (const std::uint32_t v : face) hash.add(v);
+  hash.add(range.lo);
+  hash.add(range.hi);
   for (const FanWeights& weights : tables.fan)
-    for (const std::int16_t w : weights) put_fixed32(all, static_cast<std::uint32_t>(w));
+    for (const std::int16_t w : weights) hash.add(static_cast<std::uint32_t>(w));
   for (const PlaneWeights& weights : tables.plane)
-    for (const std::int16_t w : weights) put_fixed32(all, static_cast<std::uint32_t>(w));
-  return static_cast<std::uint32_t>(XXH3_64bits(all.data(), all.size()));
+    for (const std::int16_t w : weights) hash.add(static_cast<std::uint32_t>(w));
+  return static_cast<std::uint32_t>(hash.digest());
 }
 
 }  // namespace ramcdb::codec

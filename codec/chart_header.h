@@ -12,9 +12,9 @@ namespace ramcdb::codec {
 ///   box     = 3 x (low: signed varint, high - low: varint)     when flags has kOwnBox
 ///   edge_exponent                                              when coding is dense
 ///
-/// and goes on with what the coder wrote. Format and coding are never 0. check: the lower half of XXH3-64 over
-/// everything that decoding the blob takes and gives (chart_check()), so that a wrong border, table or range, a damaged
-/// blob and a miscompiled decoder are all noticed.
+/// and goes on with what the coder wrote. Format and coding are never 0. check: the lower half of XXH3-64 over the rest
+/// of the header and everything that decoding the blob takes and gives (chart_check()), so that a wrong border, table
+/// or range, a damaged blob and a miscompiled decoder are all noticed.
 struct ChartHeader {
   ChartCoding coding = ChartCoding::dense;
   ChartCounts counts;
@@ -27,16 +27,20 @@ struct ChartHeader {
 /// Formats that were ever written: 1.
 inline constexpr std::uint8_t kChartFormat = 1;
 
-/// What a chart may have; far more than any that pays. Encoders refuse more, decoders do not believe it.
-inline constexpr std::uint32_t kMaxChartVertices = 1u << 26;
-inline constexpr std::uint32_t kMaxChartFaces = 1u << 27;
+/// What a chart may have: a hundred times more than pays, and little enough that the worst blob takes a decoder some
+/// 200 MB and a second. Encoders refuse more, decoders do not believe it.
+inline constexpr std::uint32_t kMaxChartVertices = 1u << 20;
+inline constexpr std::uint32_t kMaxChartFaces = 1u << 21;
 
 void put_chart_header(Buffer& out, const ChartHeader& header);
 
 /// \param range what the box is unless the chart has its own
 [[nodiscard]] ChartHeader take_chart_header(ByteReader& reader, const LatticeBox& range);
 
-/// The check of a chart that was coded with `range` and `tables`.
-[[nodiscard]] std::uint32_t chart_check(const Chart& chart, const LatticeBox& range, const CoderTables& tables);
+/// The check of a chart that was coded with `header`, `range` and `tables`: over the bytes of the header before the
+/// check, the number of loops, loop sizes, positions, faces, the range, and the weights of fan and plane classes, every
+/// number (also every byte of the header) as four bytes, lowest first.
+[[nodiscard]] std::uint32_t chart_check(const ChartHeader& header, const Chart& chart, const LatticeBox& range,
+                                        const CoderTables& tables);
 
 }  // namespace ramcdb::codec

@@ -452,6 +452,7 @@ Buffer encode_page(const Page& page) {
 
 Page decode_page(Bytes blob) {
   if (blob.empty()) corrupt("no bytes");
+  if (blob[0] >> 4 == 0) corrupt("no known format");
   if (blob[0] >> 4 != kFormat)
     throw Error(Errc::unsupported_version, "page blob: unknown format", {}, "use a newer ramcdb");
   const unsigned kind = blob[0] & 15;

@@ -26,6 +26,9 @@ enum class Predictor : std::uint8_t { blended = 0, linear = 1 };
 
 constexpr std::uint8_t kFormat = 1;
 
+/// More than any wire has, and little enough that hostile counts cost little.
+constexpr std::size_t kMostPoints = 1 << 20;
+
 /// Weights of a step back, the step before it, and the chord, in 1/1024.
 struct Weights {
   std::int64_t d1, d2, chord;
@@ -158,13 +161,14 @@ Buffer encode_wire(const Wire& wire) {
       if (std::abs(std::int64_t{p[a]}) > kMaxLatticeCoordinate)
         throw Error(Errc::invalid_argument, "a point of a wire leaves the lattice");
   if (wire.points.size() == 2) return {};
+  if (wire.points.size() - 2 > kMostPoints)
+    throw Error(Errc::limit_exceeded, "a wire has too many points", {}, "use smaller charts");
   Buffer blended = encode_with(Predictor::blended, wire);
   Buffer linear = encode_with(Predictor::linear, wire);
   return linear.size() < blended.size() ? linear : blended;
 }
 
 Wire decode_wire(Bytes blob, LatticePoint begin, LatticePoint end, std::uint32_t inner_points) {
-  constexpr std::uint32_t kMostPoints = 1U << 22;
   Wire wire;
   wire.points = {begin, end};
   if (inner_points == 0) {
@@ -172,6 +176,7 @@ Wire decode_wire(Bytes blob, LatticePoint begin, LatticePoint end, std::uint32_t
     return wire;
   }
   if (blob.empty() || inner_points > kMostPoints) throw Error(Errc::corrupt, "wire blob: no bytes, or too many points");
+  if (blob[0] >> 4 == 0) throw Error(Errc::corrupt, "wire blob: no known format");
   if (blob[0] >> 4 != kFormat)
     throw Error(Errc::unsupported_version, "wire blob: unknown format", {}, "use a newer ramcdb");
   if ((blob[0] & 15) > 1) throw Error(Errc::corrupt, "wire blob: unknown predictor");

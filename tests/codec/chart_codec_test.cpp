@@ -1,0 +1,181 @@
+#include "codec/chart_codec.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "ramcdb/error.h"
+#include "tests/codec/chart_cutter.h"
+#include "tests/codec/chart_families.h"
+
+namespace ramcdb::codec {
+namespace {
+
+using testing::NamedChart;
+
+const CoderTables kTables;
+
+EncodedChart encode(const Chart& chart, const LatticeBox& range) {
+  return encode_chart(chart, Profile::dense, kTables, range);
+}
+EncodedChart encode(const Chart& chart) { return encode(chart, testing::box_of(chart)); }
+
+DecodedChart decode(const EncodedChart& encoded, const LatticeBox& range) {
+  const Chart& chart = encoded.decoded;
+  return decode_chart(encoded.blob, std::span(chart.positions).first(chart.border_count()), chart.loop_sizes, kTables,
+                      range);
+}
+
+/// `faces` with each begun where it is least, sorted.
+std::vector<Triangle> sorted_faces(std::vector<Triangle> faces) {
+  for (Triangle& f : faces) f = std::min({f, Triangle{f[1], f[2], f[0]}, Triangle{f[2], f[0], f[1]}});
+  std::sort(faces.begin(), faces.end());
+  return faces;
+}
+
+/// That `decoded` is `chart`, its inner vertices renumbered as `source` says and its faces in another order.
+void expect_same_surface(const Chart& chart, const Chart& decoded, const std::vector<std::uint32_t>& source) {
+  ASSERT_EQ(decoded.loop_sizes, chart.loop_sizes);
+  ASSERT_EQ(source.size(), chart.positions.size());
+  ASSERT_EQ(decoded.positions.size(), chart.positions.size());
+  EXPECT_EQ(std::set<std::uint32_t>(source.begin(), source.end()).size(), source.size());
+  for (std::uint32_t v = 0; v < source.size(); ++v) {
+    ASSERT_LT(source[v], source.size());
+    EXPECT_EQ(decoded.positions[v], chart.positions[source[v]]);
+    EXPECT_TRUE(source[v] == v || v >= chart.border_count());
+  }
+  std::vector<Triangle> renumbered = decoded.faces;
+  for (Triangle& f : renumbered)
+    for (std::uint32_t& v : f) v = source[v];
+  EXPECT_EQ(sorted_faces(renumbered), sorted_faces(chart.faces));
+}
+
+void expect_round_trip(const Chart& chart, const LatticeBox& range) {
+  const EncodedChart encoded = encode(chart, range);
+  expect_same_surface(chart, encoded.decoded, encoded.source_vertex);
+
+  const DecodedChart decoded = decode(encoded, range);
+  EXPECT_EQ(decoded.chart, encoded.decoded);
+  EXPECT_EQ(decoded.coding, encoded.coding);
+  EXPECT_EQ(decoded.cost, encoded.cost);
+  const ChartCost& cost = encoded.cost;
+  EXPECT_EQ(cost.header + cost.connectivity + cost.geometry, 8 * 256 * encoded.blob.size());
+
+  const EncodedChart again = encode(encoded.decoded, range);
+  EXPECT_EQ(again.blob, encoded.blob);
+  EXPECT_EQ(again.decoded, encoded.decoded);
+}
+
+TEST(ChartCodec, ManifoldChartsComeBackAndReencodeToTheSameBytes) {
+  for (const auto& [name, chart] : testing::manifold_charts()) {
+    SCOPED_TRACE(name);
+    expect_round_trip(chart, testing::box_of(chart));
+  }
+}
+
+TEST(ChartCodec, BrokenChartsComeBackToo) {
+  for (const auto& [name, chart] : testing::broken_charts()) {
+    SCOPED_TRACE(name);
+    expect_round_trip(chart, testing::box_of(chart));
+    EXPECT_EQ(encode(chart).coding, ChartCoding::raw);
+  }
+}
+
+TEST(ChartCodec, TriangleSoupsComeBack) {
+  for (std::uint32_t seed = 1; seed <= 3000; ++seed) {
+    SCOPED_TRACE(seed);
+    const Chart soup = testing::triangle_soup(seed);
+    expect_round_trip(soup, testing::box_of(soup));
+  }
+}
+
+TEST(ChartCodec, LargeManifoldChartsAreCodedDensely) {
+  for (const auto& [name, chart] : testing::manifold_charts()) {
+    const bool smooth = name.find("anywhere") == std::string::npos;
+    EXPECT_TRUE(encode(chart).coding == ChartCoding::dense || chart.faces.size() <= 100 || !smooth) << name;
+  }
+}
+
+TEST(ChartCodec, BytesDoNotDependOnTheNumberingOfVerticesAndFaces) {
+  for (const auto& [name, chart] : testing::manifold_charts()) {
+    const std::set<LatticePoint> places(chart.positions.begin(), chart.positions.end());
+    if (places.size() < chart.positions.size()) continue;  // then the numbering does tell vertices apart
+    EXPECT_EQ(encode(testing::shuffled(chart, 99)).blob, encode(chart).blob) << name;
+  }
+}
+
+TEST(ChartCodec, VerticesOutsideOfTheRangeBringTheirOwnBox) {
+  for (const auto& [name, chart] : testing::manifold_charts()) {
+    SCOPED_TRACE(name);
+    const LatticeBox elsewhere{{-3, -3, -3}, {3, 3, 3}};
+    expect_round_trip(chart, elsewhere);
+    expect_round_trip(chart, LatticeBox{});
+    const bool has_inner = chart.positions.size() > chart.border_count();
+    EXPECT_EQ(encode(chart, LatticeBox{}).expanded_range, has_inner);
+    EXPECT_FALSE(encode(chart).expanded_range);
+  }
+}
+
+TEST(ChartCodec, AnyTableCodesAnyChart) {
+  std::vector<CoderTables> tables(3);
+  for (FanWeights& weights : tables[0].fan) weights.fill(kMaxWeight);
+  for (PlaneWeights& weights : tables[0].plane) weights.fill(-kMaxWeight);
+  for (FanWeights& weights : tables[1].fan) weights.fill(0);
+  for (PlaneWeights& weights : tables[1].plane) weights.fill(0);
+  for (FanWeights& weights : tables[2].fan) weights = {kMaxWeight, -kMaxWeight, 1, -1, kMaxWeight, kMaxWeight};
+  for (const auto& [name, chart] : testing::manifold_charts())
+    for (const CoderTables& table : tables) {
+      const LatticeBox range = testing::box_of(chart);
+      const EncodedChart encoded = encode_chart(chart, Profile::dense, table, range);
+      const DecodedChart decoded = decode_chart(encoded.blob, std::span(chart.positions).first(chart.border_count()),
+                                                chart.loop_sizes, table, range);
+      expect_same_surface(chart, decoded.chart, encoded.source_vertex);
+    }
+}
+
+TEST(ChartCodec, ChartsOfScansTakeFewBits) {
+  const NamedChart scan = [] {
+    for (auto& c : testing::manifold_charts())
+      if (c.name == "scan") return c;
+    return NamedChart{};
+  }();
+  const EncodedChart encoded = encode(scan.chart);
+  const double bits = 8.0 * static_cast<double>(encoded.blob.size()) / static_cast<double>(scan.chart.positions.size());
+  EXPECT_LT(bits, 21);
+  EXPECT_GT(encoded.cost.geometry, encoded.cost.connectivity);
+}
+
+TEST(ChartCodec, RefusesWhatIsNoChart) {
+  const Chart good = testing::one_triangle();
+  const auto code_of = [](const Chart& chart, const LatticeBox& range = {{0, 0, 0}, {9, 9, 9}}) {
+    try {
+      (void)encode(chart, range);
+    } catch (const Error& e) {
+      return e.code();
+    }
+    return Errc::cancelled;  // stands for "took it"
+  };
+  Chart bad = good;
+  bad.faces[0][2] = 3;
+  EXPECT_EQ(code_of(bad), Errc::invalid_argument);
+  bad = good;
+  bad.loop_sizes = {2};
+  EXPECT_EQ(code_of(bad), Errc::invalid_argument);
+  bad.loop_sizes = {4};
+  EXPECT_EQ(code_of(bad), Errc::invalid_argument);
+  bad.loop_sizes = {0xffffffffu, 4};
+  EXPECT_EQ(code_of(bad), Errc::invalid_argument);
+  bad = good;
+  bad.positions[1].y = kMaxLatticeCoordinate + 1;
+  EXPECT_EQ(code_of(bad), Errc::invalid_argument);
+  bad = good;
+  bad.positions.resize((1u << 20) + 1);
+  EXPECT_EQ(code_of(bad), Errc::limit_exceeded);
+  EXPECT_EQ(code_of(good, {{std::numeric_limits<std::int32_t>::min(), 0, 0}, {0, 0, 0}}), Errc::invalid_argument);
+  EXPECT_EQ(code_of(good), Errc::cancelled);
+}
+
+}  // namespace
+}  // namespace ramcdb::codec
