@@ -59,8 +59,9 @@ bool float_holds(std::string_view text, double value) {
   if (std::abs(value) >= kTooLarge) return false;
   const double off = std::abs(nearest_float(value) - value);
   if (off == 0) return true;
-  // Half a step of the last digit, and what the double itself is off.
-  return off <= 0.5 * unit_of_last_digit(text) + std::abs(value) * 0x1p-51;
+  // Of thirteen digits and more only the very number counts: else a double next to a float32 would be rounded to it.
+  const double unit = unit_of_last_digit(text), size = std::abs(value);
+  return unit > size * 0x1p-40 && off <= 0.5 * unit + size * 0x1p-51;  // what the double itself is off
 }
 
 }  // namespace ramcdb::mesh_file

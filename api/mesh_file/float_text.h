@@ -5,7 +5,8 @@
 namespace ramcdb::mesh_file {
 
 /// Whether the float32 nearest to a number written in text is that number to the last digit given: so it is for what
-/// was printed from a float32, with however many digits, and it is not for most of what was printed from a double.
+/// was printed from a float32 with up to twelve digits or at least seventeen. It is not for a double that is no float32
+/// printed with seventeen digits, and for few with seven to twelve.
 /// `value` is the finite double nearest to `text`.
 [[nodiscard]] bool float_holds(std::string_view text, double value);
 

@@ -82,6 +82,16 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
+TEST(RoundTripText, ShortDoublesStayDoubles) {
+  const std::vector<Triangle> faces{{0, 1, 2}};
+  const std::vector<Point> positions{{0.5, 0, 0}, {0.1, 0.2, 562345.1}, {0, std::nextafter(0.5, 1), 0.3}};
+  for (const char* name : {"a.obj", "a.off", "a.ply"}) {
+    const MeshData read = write_and_read(name, {positions, faces, Scalar::float64, {}, {}}, true);
+    EXPECT_EQ(read.scalar, Scalar::float64) << name;
+    EXPECT_EQ(bits(read.positions), bits(positions)) << name;
+  }
+}
+
 TEST(RoundTripStl, KeepsEveryCorner) {
   const TestMesh mesh = hard_numbers(Scalar::float32);
   const MeshData read = write_and_read("a.stl", {mesh.positions, mesh.faces, Scalar::float32, {}, {}}, false);

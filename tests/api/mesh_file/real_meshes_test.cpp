@@ -1,0 +1,123 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <map>
+#include <optional>
+
+#include "ramcdb/error.h"
+#include "tests/api/mesh_file/files.h"
+#include "tests/support/meshes.h"
+
+/// Real meshes of others: as many vertices and faces as the table in MESHES.md beside them says.
+namespace ramcdb::test {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::uintmax_t kLargestFile = 30'000'000;  // the test stays below a minute
+
+/// A facet of four vertices, on purpose; the table counts what a lenient reader makes of it.
+constexpr std::string_view kRefused = "tiny/toomanyvertices.stl";
+
+struct Counts {
+  std::size_t vertices = 0, faces = 0;
+};
+
+/// "42,321", or nothing.
+std::optional<std::size_t> count_of(std::string cell) {
+  std::erase_if(cell, [](char c) { return c == ',' || c == ' '; });
+  std::size_t value = 0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (error != std::errc() || end != cell.data() + cell.size()) return std::nullopt;
+  return value;
+}
+
+/// Rows read | `folder/file` ... | format | V | F | ...
+std::map<std::string, std::optional<Counts>> counts_by_file(const fs::path& table) {
+  std::map<std::string, std::optional<Counts>> all;
+  std::ifstream in(table);
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with("| `")) continue;
+    std::vector<std::string> cells;
+    for (std::size_t begin = 1, end = 0; (end = line.find('|', begin)) != line.npos; begin = end + 1)
+      cells.push_back(line.substr(begin, end - begin));
+    if (cells.size() < 4) continue;
+    const auto vertices = count_of(cells[2]), faces = count_of(cells[3]);
+    auto& entry = all[cells[0].substr(2, cells[0].find('`', 2) - 2)];
+    if (vertices && faces) entry = Counts{*vertices, *faces};
+  }
+  return all;
+}
+
+bool is_read(const fs::path& file) {
+  try {
+    (void)mesh_file::format_of(file);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// As the table counts: STL after welding.
+void expect_counts(const mesh_file::MeshData& mesh, const Counts& expected, const std::string& name) {
+  EXPECT_TRUE(is_sound(mesh)) << name;
+  EXPECT_EQ(mesh.face_count(), expected.faces) << name;
+  std::size_t vertices = mesh.positions.size();
+  if (mesh.soup && vertices != expected.vertices) {
+    auto welded = mesh;
+    mesh_file::weld_exact(welded);
+    vertices = welded.positions.size();
+  }
+  EXPECT_EQ(vertices, expected.vertices) << name;
+}
+
+/// What comes back from a file of the same format that we wrote ourselves.
+void expect_same_again(const mesh_file::MeshData& mesh, const ScratchFolder& scratch, const std::string& name) {
+  auto cut = mesh;
+  mesh_file::triangulate(cut);
+  const auto faces = triangles(cut);
+  for (const bool ascii : {false, true}) {
+    const auto file = scratch.file("again" + fs::path(name).extension().string());
+    mesh_file::write_mesh(file, mesh_file::format_of(file), {cut.positions, faces, cut.scalar, {}, {}}, ascii);
+    const auto again = mesh_file::read_mesh(file);
+    EXPECT_EQ(again.face_count(), faces.size()) << name;
+    if (mesh.soup) continue;  // corners stand in the order of faces
+    EXPECT_TRUE(again.positions == cut.positions) << name;
+    EXPECT_TRUE(again.corners == cut.corners) << name;
+  }
+}
+
+TEST(RealMeshes, CountsAreThoseOfTheTable) {
+  const auto folder = meshes_folder();
+  if (!folder || !fs::exists(*folder / "MESHES.md"))
+    GTEST_SKIP() << "real meshes: set RAMCDB_MESHES to a folder with MESHES.md";
+  const auto expected = counts_by_file(*folder / "MESHES.md");
+  const ScratchFolder scratch;
+  std::size_t read = 0;
+  for (const auto& [name, counts] : expected) {
+    const fs::path file = *folder / name;
+    if (!is_read(file) || !fs::exists(file) || fs::file_size(file) > kLargestFile) {
+      fmt::print("skipped {}: {}\n", name, is_read(file) ? "missing or too large" : "another format");
+      continue;
+    }
+    if (!counts || name == kRefused) {
+      EXPECT_THROW((void)mesh_file::read_mesh(file), Error) << name;  // the table has none for what is no text OFF
+      continue;
+    }
+    try {
+      const auto mesh = mesh_file::read_mesh(file);
+      expect_counts(mesh, *counts, name);
+      expect_same_again(mesh, scratch, name);
+      ++read;
+    } catch (const Error& error) {
+      ADD_FAILURE() << name << ": " << error.what();
+    }
+  }
+  fmt::print("{} real meshes read, of {} in the table\n", read, expected.size());
+  EXPECT_GT(read, 0U);
+}
+
+}  // namespace
+}  // namespace ramcdb::test
