@@ -57,7 +57,7 @@ class NewFile {
   void all_digits(double value) {
     std::array<char, 40> digits;
     const auto end =
-        std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 17).ptr;
+        std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::scientific, 16).ptr;
     text({digits.data(), static_cast<std::size_t>(end - digits.data())});
   }
   void whole(std::uint64_t value) {

@@ -84,12 +84,14 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(RoundTripText, ShortDoublesStayDoubles) {
   const std::vector<Triangle> faces{{0, 1, 2}};
-  const std::vector<Point> positions{{0.5, 0, 0}, {0.1, 0.2, 562345.1}, {0, std::nextafter(0.5, 1), 0.3}};
-  for (const char* name : {"a.obj", "a.off", "a.ply"}) {
-    const MeshData read = write_and_read(name, {positions, faces, Scalar::float64, {}, {}}, true);
-    EXPECT_EQ(read.scalar, Scalar::float64) << name;
-    EXPECT_EQ(bits(read.positions), bits(positions)) << name;
-  }
+  const std::vector<Point> tenths{{0.5, 0, 0}, {0.1, 0.2, 562345.1}, {0, std::nextafter(0.5, 1), 0.3}};
+  const std::vector<Point> rounds_well{{128.602, 0, 0}, {0.1, 0, 0}, {0.2, 0, 0}};  // 128.602 with %.17g
+  for (const auto& positions : {tenths, rounds_well})
+    for (const char* name : {"a.obj", "a.off", "a.ply"}) {
+      const MeshData read = write_and_read(name, {positions, faces, Scalar::float64, {}, {}}, true);
+      EXPECT_EQ(read.scalar, Scalar::float64) << name;
+      EXPECT_EQ(bits(read.positions), bits(positions)) << name;
+    }
 }
 
 TEST(RoundTripStl, KeepsEveryCorner) {
