@@ -11,16 +11,20 @@ std::uint32_t take(const std::uint8_t*& at, int bytes) {
   return value;
 }
 
-bool is_rare(std::uint32_t kind) {
-  return kind >= static_cast<std::uint32_t>(Kind::table) && kind <= static_cast<std::uint32_t>(Kind::store_state);
+constexpr std::uint32_t kKindComplement = 255;
+
+/// The kind that the first byte of a key in `main` says.
+std::optional<Kind> kind_in_main(std::uint32_t first_byte) {
+  const std::uint32_t kind = kKindComplement - first_byte;
+  if (kind < 1 || kind > static_cast<std::uint32_t>(Kind::store_state)) return std::nullopt;
+  if (table_of(static_cast<Kind>(kind)) != Table::main) return std::nullopt;
+  return static_cast<Kind>(kind);
 }
 
 }  // namespace
 
 Table table_of(Kind kind) {
   switch (kind) {
-    case Kind::page:
-      return Table::page;
     case Kind::wire:
       return Table::wire;
     case Kind::chart:
@@ -28,7 +32,7 @@ Table table_of(Kind kind) {
     case Kind::attribute:
       return Table::attribute;
     default:
-      return Table::rare;
+      return Table::main;
   }
 }
 
@@ -58,9 +62,9 @@ const char* kind_name(Kind kind) {
 
 EncodedKey::EncodedKey(const BlobKey& key, std::uint16_t part) {
   const Table table = table_of(key.kind);
-  if (table == Table::rare) append(static_cast<std::uint32_t>(key.kind), 1);
+  if (table == Table::main) append(kKindComplement - static_cast<std::uint32_t>(key.kind), 1);
   append(key.mesh.value, 2);
-  if (table == Table::rare || table == Table::attribute) append(key.layer, 2);
+  if (table == Table::main || table == Table::attribute) append(key.layer, 2);
   append(key.id, 4);
   append(key.version.value, 4);
   append(part, 2);
@@ -76,19 +80,18 @@ void EncodedKey::set_part(std::uint16_t part) {
 }
 
 std::optional<DecodedKey> decode_key(Table table, const std::uint8_t* data, std::size_t size) {
-  const std::size_t expected = table == Table::rare ? 15 : table == Table::attribute ? 14 : 12;
+  const std::size_t expected = table == Table::main ? 15 : table == Table::attribute ? 14 : 12;
   if (size != expected) return std::nullopt;
-  constexpr std::array kKinds{Kind::page, Kind::wire, Kind::chart, Kind::attribute};
+  constexpr std::array kKinds{Kind::page, Kind::wire, Kind::chart, Kind::attribute};  // of `main` it is in the key
   DecodedKey out;
-  if (table == Table::rare) {
-    const std::uint32_t kind = take(data, 1);
-    if (!is_rare(kind)) return std::nullopt;
-    out.key.kind = static_cast<Kind>(kind);
-  } else {
-    out.key.kind = kKinds[static_cast<std::size_t>(table)];
+  out.key.kind = kKinds[static_cast<std::size_t>(table)];
+  if (table == Table::main) {
+    const auto kind = kind_in_main(take(data, 1));
+    if (!kind) return std::nullopt;
+    out.key.kind = *kind;
   }
   out.key.mesh = MeshId(take(data, 2));
-  if (table == Table::rare || table == Table::attribute) out.key.layer = static_cast<std::uint16_t>(take(data, 2));
+  if (table == Table::main || table == Table::attribute) out.key.layer = static_cast<std::uint16_t>(take(data, 2));
   out.key.id = take(data, 4);
   out.key.version = VersionId(take(data, 4));
   out.part = static_cast<std::uint16_t>(take(data, 2));

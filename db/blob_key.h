@@ -10,19 +10,22 @@
 
 namespace ramcdb::db {
 
-/// The LMDB sub-databases. Kinds of which there is little share one, for each needs a leaf page of its own.
-enum class Table : std::uint8_t { page, wire, chart, attribute, rare };
-inline constexpr std::size_t kTableCount = 5;
-inline constexpr std::array<const char*, kTableCount> kTableNames{"page", "wire", "chart", "attribute", "rare"};
+/// The LMDB databases: `main` is the unnamed one of the file and holds all kinds of which there is little, for each
+/// database needs pages of its own. The others are named.
+enum class Table : std::uint8_t { main, wire, chart, attribute };
+inline constexpr std::size_t kTableCount = 4;
+inline constexpr std::array<const char*, kTableCount> kTableNames{nullptr, "wire", "chart", "attribute"};
 
 [[nodiscard]] Table table_of(Kind kind);
 [[nodiscard]] const char* kind_name(Kind kind);
 
 /// A key as LMDB holds it, big-endian so that keys sort by mesh, then object, then version, then part:
 ///
-///     page, wire, chart   mesh:u16 | id:u32 | version:u32 | part:u16                          12 bytes
-///     attribute           mesh:u16 | layer:u16 | id:u32 | version:u32 | part:u16              14 bytes
-///     rare                kind:u8 | mesh:u16 | layer:u16 | id:u32 | version:u32 | part:u16    15 bytes
+///     wire, chart   mesh:u16 | id:u32 | version:u32 | part:u16                          12 bytes
+///     attribute     mesh:u16 | layer:u16 | id:u32 | version:u32 | part:u16              14 bytes
+///     main          255-kind:u8 | mesh:u16 | layer:u16 | id:u32 | version:u32 | part:u16    15 bytes
+///
+/// In `main` the names of the other tables come first and pages last, so that the pages of a new mesh are appended.
 class EncodedKey {
  public:
   EncodedKey(const BlobKey& key, std::uint16_t part);

@@ -40,6 +40,7 @@ class Attempt : public Writer {
     lock_.write_note(fmt::format("process {}\n", ::getpid()));
     finished_lists_ = recover(environment(), catalogue_);
     state_ = read_state(*environment().read());
+    state_.repository_id = store_->id();
     state_.seq = std::max(state_.seq, catalogue_.newest().value) + 1;
     fail_point("writer.locked");
   }
@@ -142,7 +143,7 @@ class Attempt : public Writer {
     std::sort(keys.begin(), keys.end());
     if (chunks_ == 0xFFFF) throw Error(Errc::limit_exceeded, "an import writes more than 4 TB of blobs");
     const BlobKey key = pending_key(version(), chunks_++);
-    PartWriter(transaction, Table::rare).put(key, seal(key, encode_key_list(keys)));
+    PartWriter(transaction, Table::main).put(key, seal(key, encode_key_list(keys)));
   }
 
   std::shared_ptr<StoreImpl> store_;

@@ -67,8 +67,8 @@ VersionInfo info_of(const Statement& row) {
 
 void Catalogue::create(const std::filesystem::path& file, std::string_view repository_id) {
   Database db(file, Database::Mode::create);
-  // Small pages: a catalogue of a few versions is a few kilobytes.
-  db.run("PRAGMA page_size = 1024; PRAGMA journal_mode = WAL");
+  // The smallest pages: a catalogue of a few versions fits one block of the disk.
+  db.run("PRAGMA page_size = 512; PRAGMA journal_mode = WAL");
   DatabaseTransaction transaction(db);
   db.run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kApplicationId, kSchemaVersion));
   db.run(kSchema);

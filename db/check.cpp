@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstring>
 #include <set>
 
 #include "db/blob_parts.h"
@@ -13,6 +15,13 @@ namespace {
 
 using Found = std::function<void(const Store::Problem&)>;
 
+/// LMDB keeps the named tables as entries of the unnamed one.
+bool is_table_name(Table table, Bytes key) {
+  return table == Table::main && std::any_of(kTableNames.begin() + 1, kTableNames.end(), [&](const char* name) {
+           return std::equal(key.begin(), key.end(), name, name + std::strlen(name));
+         });
+}
+
 /// Looks at every blob of one table: its key, its parts, its checksum.
 class TableCheck {
  public:
@@ -24,6 +33,7 @@ class TableCheck {
     std::uint64_t count = 0;
     std::optional<DecodedKey> before;
     for (bool more = keys.first(); more; more = keys.next()) {
+      if (is_table_name(table_, keys.key())) continue;
       const auto now = decode_key(table_, keys.key().data(), keys.key().size());
       if (!now) {
         found_({"key", std::nullopt, fmt::format("table {} holds a key of another form", name())});
@@ -41,7 +51,9 @@ class TableCheck {
   }
 
  private:
-  [[nodiscard]] const char* name() const { return kTableNames[static_cast<std::size_t>(table_)]; }
+  [[nodiscard]] const char* name() const {
+    return table_ == Table::main ? "main" : kTableNames[static_cast<std::size_t>(table_)];
+  }
 
   void check_blob(Cursor& cursor, const BlobKey& key) {
     try {
@@ -61,7 +73,7 @@ bool same(const CommitRecord& a, const CommitRecord& b) { return encode_record(a
 /// Every row has its commit record, and the same content.
 void check_record(const Transaction& transaction, Catalogue& catalogue, VersionId version, const Found& found) {
   try {
-    Cursor cursor(transaction, Table::rare);
+    Cursor cursor(transaction, Table::main);
     const auto blob = read_blob(cursor, record_key(version));
     if (!blob)
       found({"missing", record_key(version), fmt::format("version {} has no commit record", version.value)});
@@ -76,7 +88,8 @@ void check_record(const Transaction& transaction, Catalogue& catalogue, VersionI
 /// Blobs that no published version wrote. While a writer is at work its own are such, and no problem.
 void check_leftovers(const Transaction& transaction, VersionId newest, const std::set<VersionId>& versions,
                      const Found& found) {
-  for (std::size_t t = 0; t < kTableCount; ++t) {
+  const std::size_t tables = transaction.has_tables() ? kTableCount : 1;
+  for (std::size_t t = 0; t < tables; ++t) {
     Cursor cursor(transaction, static_cast<Table>(t));
     for (bool more = cursor.first(); more; more = cursor.next()) {
       const auto key = decode_key(static_cast<Table>(t), cursor.key().data(), cursor.key().size());

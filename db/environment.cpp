@@ -68,6 +68,7 @@ Transaction::Transaction(Environment& environment, bool write)
 
 void Transaction::begin() {
   environment_.require_own_process();
+  has_tables_ = environment_.find_tables();
   const unsigned flags = write_ ? 0 : MDB_RDONLY;
   int rc = mdb_txn_begin(environment_.env_, nullptr, flags, &txn_);
   if (rc == MDB_READERS_FULL) {
@@ -81,6 +82,9 @@ void Transaction::begin() {
     rc = mdb_txn_begin(environment_.env_, nullptr, flags, &txn_);
   }
   check_lmdb(rc, environment_.file_);
+  if (!write_ || has_tables_) return;
+  making_tables_ = std::unique_lock<std::mutex>(environment_.tables_mutex_);
+  has_tables_ = environment_.open_handles(txn_, MDB_CREATE);
 }
 
 Transaction::~Transaction() {
@@ -94,12 +98,13 @@ const std::filesystem::path& Transaction::file() const { return environment_.fil
 void Transaction::commit() {
   MDB_txn* txn = std::exchange(txn_, nullptr);
   check_lmdb(mdb_txn_commit(txn), environment_.file_);
+  if (making_tables_) environment_.tables_open_ = true;
 }
 
 void Transaction::renew() {
   environment_.require_own_process();
   mdb_txn_reset(txn_);
-  if (mdb_txn_renew(txn_) == MDB_SUCCESS) return;
+  if (has_tables_ && mdb_txn_renew(txn_) == MDB_SUCCESS) return;
   mdb_txn_abort(std::exchange(txn_, nullptr));
   begin();
 }
@@ -128,7 +133,11 @@ Environment::Environment(std::filesystem::path file, Mode mode)
   try {
     open();
     if (mode != Mode::create) require_whole_file();
-    open_tables();
+    MDB_txn* txn = nullptr;
+    check_lmdb(mdb_txn_begin(env_, nullptr, MDB_RDONLY, &txn), file_);
+    const int rc = mdb_dbi_open(txn, nullptr, 0, &tables_[0]);
+    check_lmdb(rc == MDB_SUCCESS ? mdb_txn_commit(txn) : (mdb_txn_abort(txn), rc), file_);
+    if (mode == Mode::create) check_lmdb(mdb_env_sync(env_, 1), file_);
   } catch (...) {
     mdb_env_close(env_);
     throw;
@@ -167,17 +176,26 @@ void Environment::require_whole_file() const {
                 file_.string(), "restore it from a backup");
 }
 
-void Environment::open_tables() {
-  Transaction transaction(*this, mode_ == Mode::create);
-  for (std::size_t t = 0; t < kTableCount; ++t) {
-    const unsigned flags = mode_ == Mode::create ? MDB_CREATE : 0;
-    const int rc = mdb_dbi_open(transaction.get(), kTableNames[t], flags, &tables_[t]);
-    if (rc == MDB_NOTFOUND)
-      throw Error(Errc::corrupt, fmt::format("the blob file has no table '{}'", kTableNames[t]), file_.string(),
-                  "it is no repository's, or damaged");
+bool Environment::open_handles(MDB_txn* txn, unsigned flags) {
+  for (std::size_t t = 1; t < kTableCount; ++t) {
+    const int rc = mdb_dbi_open(txn, kTableNames[t], flags, &tables_[t]);
+    if (rc == MDB_NOTFOUND) return false;
     check_lmdb(rc, file_);
   }
-  transaction.commit();  // keeps the handles
+  return true;
+}
+
+bool Environment::find_tables() {
+  if (tables_open_) return true;
+  const std::unique_lock<std::mutex> alone(tables_mutex_, std::try_to_lock);
+  if (!alone) return false;  // they are just being made
+  MDB_txn* txn = nullptr;
+  if (mdb_txn_begin(env_, nullptr, MDB_RDONLY, &txn) != MDB_SUCCESS) return false;  // the caller meets the same
+  if (open_handles(txn, 0))
+    tables_open_ = mdb_txn_commit(txn) == MDB_SUCCESS;  // keeps the handles
+  else
+    mdb_txn_abort(txn);
+  return tables_open_;
 }
 
 void Environment::require_own_process() const {

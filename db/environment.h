@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -27,6 +28,8 @@ class Transaction {
   ~Transaction();
 
   [[nodiscard]] MDB_txn* get() const { return txn_; }
+  /// Whether the named tables exist: not before the first version is written.
+  [[nodiscard]] bool has_tables() const { return has_tables_; }
   [[nodiscard]] MDB_dbi table(Table t) const;
   [[nodiscard]] const std::filesystem::path& file() const;
 
@@ -42,13 +45,16 @@ class Transaction {
 
   Environment& environment_;
   bool write_;
-  std::shared_lock<std::shared_mutex> map_;  ///< while held the map stays where it is
+  std::shared_lock<std::shared_mutex> map_;     ///< while held the map stays where it is
+  std::unique_lock<std::mutex> making_tables_;  ///< held by the first write transaction of all
+  bool has_tables_ = false;
   MDB_txn* txn_ = nullptr;
 };
 
 /// A cursor over one table of a transaction, which must outlive it.
 class Cursor {
  public:
+  /// REQUIRES: the table exists.
   Cursor(const Transaction& transaction, Table table);
   Cursor(Cursor&&) = delete;
   ~Cursor() { mdb_cursor_close(cursor_); }
@@ -98,7 +104,9 @@ class Environment {
   friend class Transaction;
   void open();
   void require_whole_file() const;
-  void open_tables();
+  /// Opens the handles of the named tables, where they exist; LMDB wants one transaction at a time to do so.
+  [[nodiscard]] bool find_tables();
+  [[nodiscard]] bool open_handles(MDB_txn* txn, unsigned flags);
   /// Another process grew the map: follow.
   void adopt_map_size();
 
@@ -108,6 +116,8 @@ class Environment {
   MDB_env* env_ = nullptr;
   std::array<MDB_dbi, kTableCount> tables_{};
   std::shared_mutex map_gate_;  ///< shared by transactions, exclusive while the map moves
+  std::mutex tables_mutex_;     ///< held while handles are opened
+  std::atomic<bool> tables_open_{false};
 };
 
 /// For tests, before a repository is opened: the size that memory maps begin with. 0 for the usual one.

@@ -35,8 +35,10 @@ class TransactionReader : public BlobReader {
   }
 
   std::optional<Buffer> find(const BlobKey& key) override {
-    auto& cursor = cursors_[static_cast<std::size_t>(table_of(key.kind))];
-    if (!cursor) cursor = std::make_unique<Cursor>(*transaction_, table_of(key.kind));
+    const Table table = table_of(key.kind);
+    if (table != Table::main && !transaction_->has_tables()) return std::nullopt;
+    auto& cursor = cursors_[static_cast<std::size_t>(table)];
+    if (!cursor) cursor = std::make_unique<Cursor>(*transaction_, table);
     auto blob = read_blob(*cursor, key);
     if (blob) {
       ++blobs_;
@@ -115,18 +117,12 @@ void remove_files(const Layout& layout) {
 }
 
 void create_files(const Layout& layout) {
-  const std::string id = random_id();
   fs::create_directory(layout.pins);
-  {
-    Environment environment(layout.blobs, Environment::Mode::create);
-    const auto transaction = environment.write();
-    write_state(*transaction, {id, 0, 0});
-    transaction->commit();
-  }
+  Environment(layout.blobs, Environment::Mode::create);
   // The catalogue's name is what makes a folder a repository: it comes last, and at once.
   fs::path unfinished = layout.catalogue;
   unfinished += ".new";
-  Catalogue::create(unfinished, id);
+  Catalogue::create(unfinished, random_id());
   sync_folder(layout.folder);
   fs::rename(unfinished, layout.catalogue);
   for (const char* suffix : {"-wal", "-shm"}) {
@@ -191,8 +187,8 @@ StoreImpl::StoreImpl(const Layout& layout, Environment::Mode mode)
     : layout_(layout),
       environment_(layout.blobs, mode),
       catalogue_(layout.catalogue, mode == Environment::Mode::read ? Database::Mode::read : Database::Mode::write) {
-  id_ = read_state(*environment_.read()).repository_id;
-  if (const std::string other = catalogue_.repository_id(); other != id_)
+  id_ = catalogue_.repository_id();
+  if (const std::string other = read_state(*environment_.read()).repository_id; !other.empty() && other != id_)
     throw Error(Errc::corrupt, "data.mdb and catalogue.sqlite belong to different repositories", layout.folder.string(),
                 "restore both files from the same backup");
 }

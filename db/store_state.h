@@ -17,6 +17,7 @@ struct StoreState {
   std::uint32_t last_mesh = 0;  ///< the last mesh id that was given away
 };
 
+/// Before the first write transaction the file is empty, and the state as well: an empty id, zeros.
 /// Throws corrupt, unsupported_version.
 [[nodiscard]] StoreState read_state(const Transaction& transaction);
 void write_state(const Transaction& transaction, const StoreState& state);
