@@ -433,15 +433,15 @@ void code_page(Coder& coder, Page& page) {
 }  // namespace
 
 Buffer encode_page(const Page& page) {
+  const std::uint8_t kind = std::holds_alternative<LeafPage>(page) ? kLeaf : kInner;
+  RangeEncoder encoder;
   try {
     validate_page(page, "to be written");
+    Page copy = page;
+    code_page(encoder, copy);
   } catch (const Error& e) {
     throw Error(Errc::invalid_argument, e.what());
   }
-  const std::uint8_t kind = std::holds_alternative<LeafPage>(page) ? kLeaf : kInner;
-  RangeEncoder encoder;
-  Page copy = page;
-  code_page(encoder, copy);
   const Buffer stream = encoder.finish();
   Buffer blob;
   blob.reserve(1 + stream.size());

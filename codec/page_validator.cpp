@@ -16,7 +16,10 @@ class Validator {
     check_ids(leaf.charts, "charts");
     check_ids(leaf.wires, "wires");
     check_ids(leaf.corners, "corners");
-    for (const PageCorner& corner : leaf.corners) corners_.emplace(corner.id, &corner);
+    for (const PageCorner& corner : leaf.corners) {
+      require(on_lattice(corner.position), "a corner leaves the lattice");
+      corners_.emplace(corner.id, &corner);
+    }
     for (const PageWire& wire : leaf.wires) {
       require(corners_.contains(wire.begin) && corners_.contains(wire.end),
               "a wire ends in a corner that is not there");
@@ -32,6 +35,7 @@ class Validator {
   void check(const InnerPage& inner) {
     for (const PageEntry& entry : inner.pages) {
       require(static_cast<bool>(entry.id), "an entry names no page");
+      check(entry.box);
       std::uint64_t free_from = 1;
       for (const ChartRun run : entry.charts) {
         require(run.count > 0 && run.first.value >= free_from, "runs of charts are empty, out of order or touch");
@@ -53,7 +57,20 @@ class Validator {
               (std::string(what) + " are out of order").c_str());
   }
 
+  static bool on_lattice(LatticePoint p) {
+    for (int a = 0; a < 3; ++a)
+      if (p[a] < -kMaxLatticeCoordinate || p[a] > kMaxLatticeCoordinate) return false;
+    return true;
+  }
+
+  /// A box is empty in one way only.
+  void check(const LatticeBox& box) const {
+    require(on_lattice(box.lo) && on_lattice(box.hi), "a box leaves the lattice");
+    require(box == LatticeBox{} || (box.contains(box.lo) && box.contains(box.hi)), "a box is inside out");
+  }
+
   void check(const PageChart& chart) {
+    check(chart.box);
     for (std::size_t i = 1; i < chart.layers.size(); ++i)
       require(chart.layers[i - 1].layer < chart.layers[i].layer, "layers are out of order");
     for (const WireLoop& loop : chart.loops) {

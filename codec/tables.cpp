@@ -33,7 +33,11 @@ template <class Classes>
 void put_weights(Buffer& out, const Classes& classes, const Classes& built_in) {
   for (std::size_t i = 0; i < classes.size(); ++i)
     if (classes[i] != built_in[i])
-      for (const std::int16_t weight : classes[i]) put_signed_varint(out, weight);
+      for (const std::int16_t weight : classes[i]) {
+        if (weight < -kMaxWeight || weight > kMaxWeight)
+          throw Error(Errc::invalid_argument, "a weight of a coder table is beyond reason");
+        put_signed_varint(out, weight);
+      }
 }
 
 template <class Classes>

@@ -27,7 +27,8 @@ struct CoderTables {
   friend bool operator==(const CoderTables&, const CoderTables&) = default;
 };
 
-/// The table as a blob; classes with the built-in weights take one bit. REQUIRES: weights within +-kMaxWeight.
+/// The table as a blob; classes with the built-in weights take one bit. Throws invalid_argument for weights beyond
+/// +-kMaxWeight.
 [[nodiscard]] Buffer encode_tables(const CoderTables& tables);
 
 /// Throws corrupt for bytes that encode_tables did not write, unsupported_version for a newer format.

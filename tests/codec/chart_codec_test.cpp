@@ -9,6 +9,7 @@
 #include "ramcdb/error.h"
 #include "tests/codec/chart_cutter.h"
 #include "tests/codec/chart_families.h"
+#include "tests/codec/hostile_bytes.h"
 
 namespace ramcdb::codec {
 namespace {
@@ -175,6 +176,32 @@ TEST(ChartCodec, RefusesWhatIsNoChart) {
   EXPECT_EQ(code_of(bad), Errc::limit_exceeded);
   EXPECT_EQ(code_of(good, {{std::numeric_limits<std::int32_t>::min(), 0, 0}, {0, 0, 0}}), Errc::invalid_argument);
   EXPECT_EQ(code_of(good), Errc::cancelled);
+}
+
+TEST(ChartCodec, GoldenBytes) {
+  // Bytes of format 1: never to change.
+  EXPECT_EQ(testing::hex(encode(testing::one_triangle()).blob), "01020000010339b2c7c241");
+  const Chart tetrahedron_and_point{
+      {}, {{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {0, 0, 9}, {4, 4, 4}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+  EXPECT_EQ(testing::hex(encode(tetrahedron_and_point).blob), "010200050403cf20d0a1ed1718d0d100cc146dcd");
+  const Chart soup{{3}, {{0, 0, 0}, {10, 0, 1}, {0, 10, 2}, {3, 3, 3}}, {{0, 1, 2}, {1, 0, 3}, {0, 0, 1}}};
+  EXPECT_EQ(testing::hex(encode(soup).blob), "010100010342048464060606000002000204000602");
+  EXPECT_EQ(testing::hex(encode(testing::cut(testing::terrain(4, 30, 1))).blob),
+            "010200092005f29dbc244cb7630dc7c783cea0d2a731b011a662b506793d7ca86970");
+}
+
+TEST(ChartCodec, GoldenSizeAndSumOfManyCharts) {
+  std::uint64_t sum = 0;
+  std::size_t bytes = 0;
+  const testing::TestMesh land = testing::terrain(20, 40, 5);
+  for (std::uint32_t seed = 1; seed <= 100; ++seed) {
+    const Chart chart =
+        testing::cut(land, testing::random_region(land, 8 * seed, 1 + static_cast<int>(seed % 5), seed));
+    for (const std::uint8_t b : encode(chart).blob) sum = sum * 1000003 + b;
+    bytes += encode(chart).blob.size();
+  }
+  EXPECT_EQ(bytes, 43773u);
+  EXPECT_EQ(sum, 2766009131953168124u);
 }
 
 }  // namespace

@@ -50,6 +50,22 @@ bool refuses(const Decode& decode, Bytes bytes) {
   return refused;
 }
 
+/// For blobs that carry no check: shorter and longer ones may well be those of something else, which `decode` has to
+/// look at, but mostly they are refused.
+template <class Decode>
+void expect_survives_other_lengths(const Decode& decode, const Buffer& blob) {
+  std::size_t refused = 0, tried = 0;
+  for (std::size_t n = 0; n < blob.size(); ++n, ++tried) refused += refuses(decode, Bytes(blob).first(n));
+  EXPECT_GE(2 * refused, tried);
+  for (const int extra : {0, 1, 127, 128, 255}) {
+    Buffer longer = blob;
+    longer.push_back(static_cast<std::uint8_t>(extra));
+    (void)refuses(decode, longer);
+    longer.insert(longer.end(), 8, static_cast<std::uint8_t>(extra));
+    EXPECT_TRUE(refuses(decode, longer)) << "with nine times " << extra << " behind";
+  }
+}
+
 /// Every shorter prefix and every longer blob must be refused.
 template <class Decode>
 void expect_refuses_other_lengths(const Decode& decode, const Buffer& blob) {

@@ -1,0 +1,98 @@
+#include "codec/tables.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "ramcdb/error.h"
+#include "tests/codec/hostile_bytes.h"
+
+namespace ramcdb::codec {
+namespace {
+
+CoderTables changed(std::uint32_t seed) {
+  std::mt19937 random(seed);
+  const std::uint32_t one_in = 1 + seed % 20;
+  const auto weight = [&] {
+    return static_cast<std::int16_t>(static_cast<int>(random() % (2 * kMaxWeight + 1)) - kMaxWeight);
+  };
+  CoderTables tables;
+  for (FanWeights& weights : tables.fan)
+    if (random() % one_in == 0)
+      for (std::int16_t& w : weights) w = weight();
+  for (PlaneWeights& weights : tables.plane)
+    if (random() % one_in == 0)
+      for (std::int16_t& w : weights) w = weight();
+  return tables;
+}
+
+CoderTables filled_with(int weight) {
+  CoderTables tables;
+  for (FanWeights& weights : tables.fan) weights.fill(static_cast<std::int16_t>(weight));
+  for (PlaneWeights& weights : tables.plane) weights.fill(static_cast<std::int16_t>(weight));
+  return tables;
+}
+
+TEST(CoderTables, ComeBack) {
+  for (std::uint32_t seed = 0; seed < 200; ++seed)
+    EXPECT_EQ(decode_tables(encode_tables(changed(seed))), changed(seed)) << "seed " << seed;
+  for (const int weight : {0, kMaxWeight, -kMaxWeight})
+    EXPECT_EQ(decode_tables(encode_tables(filled_with(weight))), filled_with(weight));
+}
+
+TEST(CoderTables, RefusesWeightsBeyondReason) {
+  for (const int weight : {kMaxWeight + 1, -kMaxWeight - 1, 32767, -32768})
+    EXPECT_THROW((void)encode_tables(filled_with(weight)), Error);
+}
+
+TEST(CoderTables, OtherLengthsAreRefused) {
+  for (const std::uint32_t seed : {0u, 1u, 19u})
+    testing::expect_refuses_other_lengths([](Bytes bytes) { (void)decode_tables(bytes); },
+                                          encode_tables(changed(seed)));
+}
+
+TEST(CoderTables, DamagedBytesAreRefused) {
+  for (const std::uint32_t seed : {0u, 1u, 7u, 19u})
+    EXPECT_EQ(testing::count_taken_when_damaged([](Bytes bytes) { (void)decode_tables(bytes); },
+                                                encode_tables(changed(seed))),
+              0);
+}
+
+TEST(CoderTables, UnknownFormatsAreRefused) {
+  Buffer blob = encode_tables({});
+  const auto code_with = [&](int format) {
+    blob[0] = static_cast<std::uint8_t>(format);
+    try {
+      (void)decode_tables(blob);
+    } catch (const Error& e) {
+      return e.code();
+    }
+    return Errc::cancelled;  // stands for "took it"
+  };
+  EXPECT_EQ(code_with(0), Errc::corrupt);
+  EXPECT_EQ(code_with(2), Errc::unsupported_version);
+}
+
+TEST(CoderTables, GoldenBytes) {
+  // Bytes of format 1: never to change.
+  CoderTables tables;
+  EXPECT_EQ(testing::hex(encode_tables(tables)), "0100000000000000000000000000008f3e4c1b");
+  tables.fan[9] = {1, -2, 300, -16384, 16384, 0};
+  tables.plane[15] = {64, 64, 0};
+  EXPECT_EQ(testing::hex(encode_tables(tables)),
+            "0100020000000000000000000000800203d804ffff018080020080018001004a72f01a");
+}
+
+TEST(CoderTables, BuiltInWeightsNeverChange) {
+  // The sum that every chart's check would show, too; here it says which file to put back.
+  std::uint64_t sum = 0;
+  const CoderTables tables;
+  for (const FanWeights& weights : tables.fan)
+    for (const std::int16_t w : weights) sum = sum * 1000003 + static_cast<std::uint16_t>(w);
+  for (const PlaneWeights& weights : tables.plane)
+    for (const std::int16_t w : weights) sum = sum * 1000003 + static_cast<std::uint16_t>(w);
+  EXPECT_EQ(sum, 7160460506519239829u) << "codec/built_in_weights.h is part of the format";
+}
+
+}  // namespace
+}  // namespace ramcdb::codec
