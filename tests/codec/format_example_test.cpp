@@ -1,0 +1,97 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "codec/chart_codec.h"
+#include "codec/page_codec.h"
+#include "codec/range_coder.h"
+#include "codec/wire_codec.h"
+#include "tests/codec/hostile_bytes.h"
+
+/// The worked examples of codec/FORMAT.md: what they say is what is written and read.
+namespace ramcdb::codec {
+namespace {
+
+/// Whether the document has a line of just these bytes.
+bool is_in_the_document(const Buffer& bytes) {
+  std::ifstream file(RAMCDB_SOURCE_DIR "/codec/FORMAT.md");
+  EXPECT_TRUE(file);
+  const std::string wanted = testing::hex(bytes);
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with("    ")) continue;
+    std::erase(line, ' ');
+    if (line == wanted) return true;
+  }
+  return false;
+}
+
+TEST(FormatExample, Lattice) {
+  const Lattice lattice{{10, 0, -10}, 0.25};
+  EXPECT_EQ(lattice.snap({11.2, 0.125, -9.9}), (LatticePoint{5, 1, 0}));
+  EXPECT_EQ(lattice.position({5, 1, 0}), (Point{11.25, 0.25, -10}));
+}
+
+TEST(FormatExample, RangeCoder) {
+  RangeEncoder encoder;
+  AdaptiveBit bit;
+  for (const bool b : {true, false, true}) encoder.code(bit, b);
+  encoder.code_raw(5, 3);
+  EXPECT_TRUE(is_in_the_document(encoder.finish()));
+}
+
+TEST(FormatExample, Wire) {
+  const Wire wire{{{0, 0, 0}, {4, 1, 0}, {10, 0, 0}}};
+  EXPECT_TRUE(is_in_the_document(encode_wire(wire)));
+  EXPECT_EQ(decode_wire(encode_wire(wire), {0, 0, 0}, {10, 0, 0}, 1), wire);
+}
+
+TEST(FormatExample, LeafPage) {
+  LeafPage page;
+  PageChart chart{ChartId(1), VersionId(1), TableId(), 4, 1, {{0, 0, 0}, {10, 10, 4}}, {{{WireId(1), false}}}, {}};
+  page.charts.push_back(chart);
+  page.wires.push_back({WireId(1), VersionId(1), CornerId(1), CornerId(1), 3, {ChartId(1)}});
+  page.corners.push_back({CornerId(1), {0, 0, 0}});
+  EXPECT_TRUE(is_in_the_document(encode_page(page)));
+  EXPECT_EQ(decode_page(encode_page(page)), Page(page));
+}
+
+TEST(FormatExample, InnerPage) {
+  InnerPage page;
+  page.pages.push_back({PageId(1), VersionId(2), {{0, 0, 0}, {10, 10, 4}}, 4, {{ChartId(1), 1}}});
+  EXPECT_TRUE(is_in_the_document(encode_page(page)));
+  EXPECT_EQ(decode_page(encode_page(page)), Page(page));
+}
+
+void expect_example(const Chart& chart, const LatticeBox& range, ChartCoding coding,
+                    const std::vector<Triangle>& faces) {
+  const EncodedChart encoded = encode_chart(chart, Profile::dense, {}, range);
+  EXPECT_EQ(encoded.coding, coding);
+  EXPECT_TRUE(is_in_the_document(encoded.blob));
+  const auto decoded =
+      decode_chart(encoded.blob, std::span(chart.positions).first(chart.border_count()), chart.loop_sizes, {}, range);
+  EXPECT_EQ(decoded.chart.positions, chart.positions);
+  EXPECT_EQ(decoded.chart.faces, faces);
+}
+
+TEST(FormatExample, RawChart) {
+  const Chart chart{{3}, {{0, 0, 0}, {10, 0, 1}, {0, 10, 2}, {3, 3, 3}}, {{0, 1, 2}, {0, 3, 1}, {0, 0, 1}}};
+  expect_example(chart, {{0, 0, 0}, {10, 10, 3}}, ChartCoding::raw, {{0, 0, 1}, {0, 1, 2}, {0, 3, 1}});
+}
+
+TEST(FormatExample, DenseChart) {
+  const Chart tent{
+      {4}, {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}, {5, 5, 4}}, {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}};
+  expect_example(tent, {{0, 0, 0}, {10, 10, 4}}, ChartCoding::dense, {{3, 0, 4}, {4, 0, 1}, {4, 1, 2}, {4, 2, 3}});
+}
+
+TEST(FormatExample, Tables) {
+  CoderTables tables;
+  tables.fan[9] = {1, -2, 300, -16384, 16384, 0};
+  tables.plane[15] = {64, 64, 0};
+  EXPECT_TRUE(is_in_the_document(encode_tables(tables)));
+  EXPECT_EQ(decode_tables(encode_tables(tables)), tables);
+}
+
+}  // namespace
+}  // namespace ramcdb::codec
