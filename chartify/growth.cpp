@@ -46,10 +46,12 @@ class BucketQueue {
 
 class Grower {
  public:
-  Grower(const IndexedMesh& mesh, const Neighbours& neighbours, const Components& components, std::uint32_t target)
-      : mesh_(mesh), neighbours_(neighbours), components_(components), target_(target) {
-    choose_seeds();
-  }
+  Grower(const IndexedMesh& mesh, const Neighbours& neighbours, const Regions& regions)
+      : mesh_(mesh),
+        neighbours_(neighbours),
+        regions_(regions),
+        seeds_(spread_seeds(regions)),
+        weights_(seeds_.size(), kFirstWeight) {}
 
   void grow() {
     partition_.chart_of_face.assign(mesh_.faces.size(), kNone);
@@ -67,6 +69,7 @@ class Grower {
       for (std::size_t e = 3 * std::size_t{face}; e < 3 * std::size_t{face} + 3; ++e) {
         const std::uint32_t g = neighbours_[e];
         if (g == kNone || partition_.chart_of_face[g] != kNone || next_key >= best[g]) continue;
+        if (regions_.region_of_face[g] != regions_.region_of_face[face]) continue;
         best[g] = next_key;
         queue.push(next_key, {g, chart});
       }
@@ -102,9 +105,8 @@ class Grower {
 
   void balance() {
     for (std::size_t c = 0; c < seeds_.size(); ++c) {
-      const std::uint32_t component = components_.component_of_face[seeds_[c]];
-      const double share = static_cast<double>(partition_.sizes[c]) * charts_in(component) /
-                           static_cast<double>(components_.sizes[component]);
+      const std::uint32_t region = regions_.region_of_face[seeds_[c]];
+      const double share = static_cast<double>(partition_.sizes[c]) * regions_.charts[region] / regions_.sizes[region];
       const double factor = std::clamp(std::sqrt(share), 0.7, 1.4);
       const auto weight = static_cast<std::uint32_t>(static_cast<double>(weights_[c]) * factor + 0.5);
       weights_[c] = std::clamp(weight, kSmallestWeight, kLargestWeight);
@@ -114,40 +116,31 @@ class Grower {
   Partition take() { return std::move(partition_); }
 
  private:
-  [[nodiscard]] std::uint32_t charts_in(std::uint32_t component) const {
-    const std::uint32_t size = components_.sizes[component];
-    if (2 * std::uint64_t{size} < target_) return 0;
-    return std::max(1U, static_cast<std::uint32_t>((2 * std::uint64_t{size} + target_) / (2 * std::uint64_t{target_})));
-  }
-
-  /// Runs of equal length along the faces of a component, which lie along the Hilbert curve; the middle of each.
-  void choose_seeds() {
-    std::vector<std::uint32_t> seen(components_.sizes.size(), 0);
-    for (std::uint32_t f = 0; f < mesh_.faces.size(); ++f) {
-      const std::uint32_t component = components_.component_of_face[f];
-      const std::uint64_t size = components_.sizes[component], count = charts_in(component);
-      const std::uint64_t at = seen[component]++;
-      if (count == 0) continue;
-      const std::uint64_t run = at * count / size;
-      const std::uint64_t begin = (run * size + count - 1) / count, end = ((run + 1) * size + count - 1) / count;
-      if (at == begin + (end - begin) / 2) seeds_.push_back(f);
-    }
-    weights_.assign(seeds_.size(), kFirstWeight);
-  }
-
   const IndexedMesh& mesh_;
   const Neighbours& neighbours_;
-  const Components& components_;
-  std::uint32_t target_;
+  const Regions& regions_;
   std::vector<std::uint32_t> seeds_, weights_;
   Partition partition_;
 };
 
 }  // namespace
 
-Partition grow_charts(const IndexedMesh& mesh, const Neighbours& neighbours, const Components& components,
-                      std::uint32_t target, int iterations, const Progress& progress) {
-  Grower grower(mesh, neighbours, components, target);
+std::vector<std::uint32_t> spread_seeds(const Regions& regions) {
+  std::vector<std::uint32_t> seeds, seen(regions.sizes.size(), 0);
+  for (std::uint32_t f = 0; f < regions.region_of_face.size(); ++f) {
+    const std::uint32_t region = regions.region_of_face[f];
+    if (region == kNone || regions.charts[region] == 0) continue;
+    const std::uint64_t size = regions.sizes[region], count = regions.charts[region], at = seen[region]++;
+    const std::uint64_t run = at * count / size;
+    const std::uint64_t begin = (run * size + count - 1) / count, end = ((run + 1) * size + count - 1) / count;
+    if (at == begin + (end - begin) / 2) seeds.push_back(f);
+  }
+  return seeds;
+}
+
+Partition grow_charts(const IndexedMesh& mesh, const Neighbours& neighbours, const Regions& regions, int iterations,
+                      const Progress& progress) {
+  Grower grower(mesh, neighbours, regions);
   grower.grow();
   for (int i = 0; i < iterations; ++i) {
     if (progress) progress(static_cast<double>(i + 1) / (iterations + 1));

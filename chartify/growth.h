@@ -9,10 +9,14 @@
 /// method on the dual graph, in integers.
 namespace ramcdb::chartify {
 
-/// Cuts the components of at least half the target into about size / target charts each. Faces of smaller components
-/// stay kNone.
+/// Cuts every region into as many charts as it says, of about equal size. What no seed of a region reaches over edges
+/// within it stays kNone.
 /// \param iterations of moving the seeds and growing again
-[[nodiscard]] Partition grow_charts(const IndexedMesh& mesh, const Neighbours& neighbours, const Components& components,
-                                    std::uint32_t target, int iterations, const Progress& progress);
+[[nodiscard]] Partition grow_charts(const IndexedMesh& mesh, const Neighbours& neighbours, const Regions& regions,
+                                    int iterations, const Progress& progress);
+
+/// Runs of equal length along the faces of each region, the middle of each run: with faces along a Hilbert curve, seeds
+/// that are spread evenly.
+[[nodiscard]] std::vector<std::uint32_t> spread_seeds(const Regions& regions);
 
 }  // namespace ramcdb::chartify

@@ -21,12 +21,12 @@ std::vector<std::uint32_t> isolated_vertices(const IndexedMesh& mesh) {
 
 }  // namespace
 
-void pack_small_components(const Components& components, std::uint32_t target, Partition& partition) {
+void pack_small_components(const Regions& components, std::uint32_t target, Partition& partition) {
   std::vector<std::uint32_t> chart_of(components.sizes.size(), kNone);
   std::uint32_t bin = kNone;
   for (std::size_t f = 0; f < partition.chart_of_face.size(); ++f) {
     if (partition.chart_of_face[f] != kNone) continue;
-    const std::uint32_t component = components.component_of_face[f];
+    const std::uint32_t component = components.region_of_face[f];
     std::uint32_t& chart = chart_of[component];
     if (chart == kNone) {
       if (bin == kNone || partition.sizes[bin] + components.sizes[component] > target) bin = partition.add_chart();

@@ -7,7 +7,7 @@
 namespace ramcdb::chartify {
 
 /// Puts the faces of no chart, whole components of them, into charts of up to `target` faces along the Hilbert curve.
-void pack_small_components(const Components& components, std::uint32_t target, Partition& partition);
+void pack_small_components(const Regions& components, std::uint32_t target, Partition& partition);
 
 /// Gives each isolated vertex to the chart of the face before it on the Hilbert curve, and makes charts of their own
 /// where very many would come to one. Returns a chart for each, in the order of the mesh's isolated vertices.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "chartify/chartify.h"
+#include "chartify/half_edge_twins.h"
 
 namespace ramcdb::chartify {
 
@@ -12,7 +13,7 @@ inline constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
 /// The faces beyond the three edges of every face, kNone where nobody is adjacent (find_twins says when).
 using Neighbours = std::vector<std::uint32_t>;
-[[nodiscard]] Neighbours find_neighbours(const IndexedMesh& mesh);
+[[nodiscard]] Neighbours find_neighbours(const std::vector<HalfEdge>& twins);
 
 /// Which chart a face belongs to, and how many faces a chart has. Faces of no chart (kNone) are left alone.
 struct Partition {
@@ -25,15 +26,23 @@ struct Partition {
   }
 };
 
-/// Connected components, numbered by their first faces.
-struct Components {
-  std::vector<std::uint32_t> component_of_face;
-  std::vector<std::uint32_t> sizes;
+/// Sets of faces that are cut into charts each on its own; faces of no region (kNone) are left alone.
+struct Regions {
+  std::vector<std::uint32_t> region_of_face;
+  std::vector<std::uint32_t> sizes;   ///< faces of each region
+  std::vector<std::uint32_t> charts;  ///< how many charts each is to be cut into; 0: none
 };
-[[nodiscard]] Components find_components(const Neighbours& neighbours);
+
+/// Connected components, numbered by their first faces; `charts` is size / target, rounded, and 0 for components of
+/// less than half the target.
+[[nodiscard]] Regions find_components(const Neighbours& neighbours, std::uint32_t target);
 
 /// Numbers charts in the order of their first faces and drops empty ones.
 void renumber(Partition& partition);
+
+/// Makes charts connected: all but the largest piece of a chart join the chart around them that they share the longest
+/// border with. Pieces without a chart beside them stay.
+void merge_pieces(const Neighbours& neighbours, Partition& partition);
 
 /// Called between stages with the share that is done; may throw to cancel.
 using Progress = std::function<void(double)>;

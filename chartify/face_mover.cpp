@@ -1,0 +1,88 @@
+#include "chartify/face_mover.h"
+
+#include <algorithm>
+
+namespace ramcdb::chartify {
+
+std::array<std::uint32_t, 3> FaceMover::charts_around(std::uint32_t face) const {
+  std::array<std::uint32_t, 3> around{};
+  for (std::uint32_t e = 0; e < 3; ++e) {
+    const std::uint32_t g = neighbour(face, e);
+    around[e] = g == kNone ? kNone : chart(g);
+  }
+  return around;
+}
+
+int FaceMover::gain(const std::array<std::uint32_t, 3>& around, std::uint32_t from, std::uint32_t to) const {
+  return static_cast<int>(std::count(around.begin(), around.end(), to) -
+                          std::count(around.begin(), around.end(), from));
+}
+
+FaceMover::Choice FaceMover::best_choice(std::uint32_t face) const {
+  const auto around = charts_around(face);
+  const std::uint32_t from = chart(face);
+  Choice best;
+  for (const std::uint32_t to : around) {
+    if (to == kNone || to == from || to == best.to) continue;
+    const Choice choice{to, gain(around, from, to)};
+    if (best.to == kNone || choice.gain > best.gain ||
+        (choice.gain == best.gain && std::pair(size(to), to) < std::pair(size(best.to), best.to)))
+      best = choice;
+  }
+  return best;
+}
+
+FaceMover::Choice FaceMover::smallest_choice(std::uint32_t face) const {
+  const auto around = charts_around(face);
+  const std::uint32_t from = chart(face);
+  Choice best;
+  for (const std::uint32_t to : around) {
+    if (to == kNone || to == from || size(to) >= size(from)) continue;
+    if (best.to == kNone || std::pair(size(to), to) < std::pair(size(best.to), best.to))
+      best = {to, gain(around, from, to)};
+  }
+  return best;
+}
+
+bool FaceMover::keeps_sizes(std::uint32_t face, std::uint32_t to) const {
+  const std::uint32_t donor = size(chart(face)), taker = size(to);
+  return (taker + 1 <= limits_.cap || taker + 1 < donor) && (donor - 1 >= limits_.floor || donor > taker);
+}
+
+bool FaceMover::keeps_shape(std::uint32_t face, std::uint32_t to) const {
+  const std::uint32_t from = chart(face);
+  if (size(from) < 2) return false;
+  const auto around = charts_around(face);
+  // Edge e ends at the corner where edge e + 1 begins; the corner across edge e begins edge e + 2.
+  for (std::uint32_t e = 0; e < 3; ++e) {
+    const std::uint32_t next = (e + 1) % 3, across = (e + 2) % 3;
+    const HalfEdge common = 3 * face + next, opposite = 3 * face + across;
+    const bool both_from = around[e] == from && around[next] == from;
+    const bool both_to = around[e] == to && around[next] == to;
+    const bool only_to = around[e] == to && around[next] != to && around[across] != to;
+    if (both_from && !others_all_in(common, from)) return false;
+    if (both_to && around[across] != to && !others_all_in(common, to)) return false;
+    if (only_to && others_touch(opposite, to)) return false;
+  }
+  return true;
+}
+
+bool FaceMover::others_all_in(HalfEdge h, std::uint32_t c) const {
+  for (HalfEdge g = twins_[previous_in_face(h)]; g != h; g = twins_[previous_in_face(g)])
+    if (g == kNoTwin || chart(face_of(g)) != c) return false;
+  return true;
+}
+
+bool FaceMover::others_touch(HalfEdge h, std::uint32_t c) const {
+  for (HalfEdge g = twins_[previous_in_face(h)]; g != h; g = twins_[previous_in_face(g)]) {
+    if (g == kNoTwin) {  // an open fan: the rest lies the other way round
+      for (HalfEdge back = twins_[h]; back != kNoTwin; back = twins_[next_in_face(back)])
+        if (chart(face_of(back)) == c) return true;
+      return false;
+    }
+    if (chart(face_of(g)) == c) return true;
+  }
+  return false;
+}
+
+}  // namespace ramcdb::chartify

@@ -1,0 +1,248 @@
+#include "chartify/straighten.h"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+#include <utility>
+
+#include "chartify/border_paths.h"
+
+namespace ramcdb::chartify {
+namespace {
+
+constexpr std::uint32_t kBandWidth = 8;     // edges on either side of a border
+constexpr std::uint32_t kCostPerEdge = 64;  // plus as much for an edge of mean length
+
+double edge_length(const IndexedMesh& mesh, std::uint32_t u, std::uint32_t v) {
+  double sum = 0;
+  for (int a = 0; a < 3; ++a) {
+    const double d = static_cast<double>(mesh.positions[u][a]) - static_cast<double>(mesh.positions[v][a]);
+    sum += d * d;
+  }
+  return std::sqrt(sum);
+}
+
+class Straightener {
+ public:
+  Straightener(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const SizeLimits& limits,
+               Partition& partition)
+      : mesh_(mesh),
+        twins_(twins),
+        limits_(limits),
+        partition_(partition),
+        fans_(mesh, twins),
+        vertex_(mesh.positions.size()),
+        on_path_(twins.size(), 0) {
+    double sum = 0;
+    for (HalfEdge h = 0; h < twins_.size(); ++h) sum += edge_length(mesh_, start_of(h), end_of(h));
+    mean_length_ = twins_.empty() ? 1 : sum / static_cast<double>(twins_.size());
+  }
+
+  void run() {
+    for (const BorderPath& path : trace_borders(mesh_, twins_, fans_, partition_.chart_of_face)) straighten(path);
+  }
+
+ private:
+  struct VertexState {
+    std::uint32_t band = 0;     ///< number of the border in whose band the vertex was last
+    std::uint32_t reached = 0;  ///< number of the border for which `cost` and `arriving` hold
+    std::uint32_t cost = 0;
+    HalfEdge arriving = kNoTwin;
+  };
+
+  [[nodiscard]] std::uint32_t start_of(HalfEdge h) const { return mesh_.faces[face_of(h)][h % 3]; }
+  [[nodiscard]] std::uint32_t end_of(HalfEdge h) const { return start_of(next_in_face(h)); }
+  [[nodiscard]] std::uint32_t chart_left(HalfEdge h) const { return partition_.chart_of_face[face_of(h)]; }
+
+  [[nodiscard]] std::uint32_t cost_of(HalfEdge h) const {
+    const double length = edge_length(mesh_, start_of(h), end_of(h));
+    if (mean_length_ == 0) return kCostPerEdge;
+    return kCostPerEdge + static_cast<std::uint32_t>(std::min(64.0, length / mean_length_) * kCostPerEdge + 0.5);
+  }
+
+  void straighten(const BorderPath& path) {
+    ++number_;
+    left_ = chart_left(path.front());
+    right_ = chart_left(twins_[path.front()]);
+    begin_ = start_of(path.front());
+    end_ = end_of(path.back());
+    if (begin_ == end_) return;
+    mark_band(path);
+    std::uint32_t cost = 0;
+    for (const HalfEdge h : path) cost += cost_of(h);
+    const BorderPath better = cheapest_path(path, cost);
+    if (!better.empty()) replace(better);
+  }
+
+  /// The vertices of the border and those around it inside the two charts.
+  void mark_band(const BorderPath& path) {
+    std::vector<std::uint32_t> ring, next;
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      vertex_[start_of(path[i])].band = number_;
+      ring.push_back(start_of(path[i]));
+    }
+    for (std::uint32_t width = 0; width < kBandWidth; ++width, ring.swap(next)) {
+      next.clear();
+      for (const std::uint32_t v : ring)
+        for_each_leaving(v, [&](HalfEdge h) {
+          const std::uint32_t u = end_of(h);
+          if (vertex_[u].band == number_ || !is_inside(u)) return;
+          vertex_[u].band = number_;
+          next.push_back(u);
+        });
+    }
+  }
+
+  template <class Visit>
+  void for_each_leaving(std::uint32_t v, Visit&& visit) const {
+    const HalfEdge first = fans_.leaving(v);
+    HalfEdge h = first;
+    do {
+      visit(h);
+      h = twins_[previous_in_face(h)];
+    } while (h != first);
+  }
+
+  /// Whether all faces around a vertex are in one of the two charts.
+  [[nodiscard]] bool is_inside(std::uint32_t v) const {
+    const HalfEdge first = fans_.leaving(v);
+    if (first == kNoTwin) return false;
+    const std::uint32_t c = chart_left(first);
+    bool inside = c == left_ || c == right_;
+    for_each_leaving(v, [&](HalfEdge h) { inside = inside && chart_left(h) == c; });
+    return inside;
+  }
+
+  /// The half-edges that leave the corner at the start of `h` between the two charts' other borders.
+  [[nodiscard]] std::vector<HalfEdge> sector(HalfEdge h, std::uint32_t left, std::uint32_t right) const {
+    std::vector<HalfEdge> leaving{h};
+    for (HalfEdge g = twins_[previous_in_face(h)]; g != kNoTwin && g != h && chart_left(g) == left;
+         g = twins_[previous_in_face(g)])
+      leaving.push_back(g);
+    for (HalfEdge g = twins_[h]; g != kNoTwin && chart_left(g) == right;) {
+      const HalfEdge out = next_in_face(g);
+      if (out == h || twins_[out] == kNoTwin || chart_left(twins_[out]) != right) break;
+      leaving.push_back(out);
+      g = twins_[out];
+    }
+    return leaving;
+  }
+
+  /// A path from corner to corner in the band that costs less than `most`, or nothing.
+  [[nodiscard]] BorderPath cheapest_path(const BorderPath& path, std::uint32_t most) {
+    std::vector<HalfEdge> arriving_at_end;
+    for (const HalfEdge h : sector(twins_[path.back()], right_, left_)) arriving_at_end.push_back(twins_[h]);
+    queue_ = {};
+    for (const HalfEdge h : sector(path.front(), left_, right_)) reach(h, 0, most, arriving_at_end);
+    while (!queue_.empty()) {
+      const auto [cost, v] = queue_.top();
+      queue_.pop();
+      if (cost != vertex_[v].cost) continue;
+      if (v == end_) return path_to_end();
+      for_each_leaving(v, [&](HalfEdge h) { reach(h, cost, most, arriving_at_end); });
+    }
+    return {};
+  }
+
+  void reach(HalfEdge h, std::uint32_t cost_before, std::uint32_t most, const std::vector<HalfEdge>& arriving_at_end) {
+    if (h == kNoTwin || twins_[h] == kNoTwin) return;
+    const std::uint32_t u = end_of(h), cost = cost_before + cost_of(h);
+    const bool ends =
+        u == end_ && std::find(arriving_at_end.begin(), arriving_at_end.end(), h) != arriving_at_end.end();
+    if (cost >= most || (!ends && (u == end_ || u == begin_ || vertex_[u].band != number_))) return;
+    VertexState& state = vertex_[u];
+    const bool tie = state.reached == number_ && cost == state.cost && start_of(h) < start_of(state.arriving);
+    if (state.reached == number_ && cost >= state.cost && !tie) return;
+    if (!tie) queue_.push({cost, u});
+    state.reached = number_;
+    state.cost = cost;
+    state.arriving = h;
+  }
+
+  [[nodiscard]] BorderPath path_to_end() const {
+    BorderPath path;
+    for (std::uint32_t v = end_; v != begin_; v = start_of(path.back())) path.push_back(vertex_[v].arriving);
+    std::reverse(path.begin(), path.end());
+    return path;
+  }
+
+  /// Gives the faces right of the new path to the right chart, those left of it to the left one, unless sizes forbid.
+  void replace(const BorderPath& path) {
+    for (const HalfEdge h : path) on_path_[h] = on_path_[twins_[h]] = number_;
+    changed_.clear();
+    bool fits = true;
+    for (const HalfEdge h : path) {
+      fits = fits && flood(face_of(twins_[h]), left_, right_);
+      fits = fits && flood(face_of(h), right_, left_);
+    }
+    if (!fits || !sizes_fit()) undo();
+  }
+
+  [[nodiscard]] bool flood(std::uint32_t seed, std::uint32_t from, std::uint32_t to) {
+    if (partition_.chart_of_face[seed] != from) return true;
+    open_.assign(1, seed);
+    change(seed, from, to);
+    while (!open_.empty()) {
+      const std::uint32_t f = open_.back();
+      open_.pop_back();
+      for (HalfEdge h = 3 * f; h < 3 * f + 3; ++h) {
+        if (twins_[h] == kNoTwin || on_path_[h] == number_ || chart_left(twins_[h]) != from) continue;
+        if (changed_.size() >= limits_.target) return false;
+        change(face_of(twins_[h]), from, to);
+        open_.push_back(face_of(twins_[h]));
+      }
+    }
+    return true;
+  }
+
+  void change(std::uint32_t face, std::uint32_t from, std::uint32_t to) {
+    partition_.chart_of_face[face] = to;
+    --partition_.sizes[from];
+    ++partition_.sizes[to];
+    changed_.push_back(face);
+    grown_left_ += to == left_ ? 1 : -1;
+  }
+
+  /// A chart that is outside the limits already may not get worse.
+  [[nodiscard]] bool sizes_fit() {
+    const std::int64_t grown = std::exchange(grown_left_, 0);
+    const auto fits = [&](std::uint32_t chart, std::int64_t growth) {
+      const std::uint32_t size = partition_.sizes[chart];
+      return size > 0 && (growth <= 0 || size <= limits_.cap) && (growth >= 0 || size >= limits_.hard_floor);
+    };
+    return fits(left_, grown) && fits(right_, -grown);
+  }
+
+  void undo() {
+    grown_left_ = 0;
+    for (auto it = changed_.rbegin(); it != changed_.rend(); ++it) {
+      std::uint32_t& chart = partition_.chart_of_face[*it];
+      --partition_.sizes[chart];
+      chart = chart == left_ ? right_ : left_;
+      ++partition_.sizes[chart];
+    }
+  }
+
+  const IndexedMesh& mesh_;
+  const std::vector<HalfEdge>& twins_;
+  const SizeLimits& limits_;
+  Partition& partition_;
+  ClosedFans fans_;
+  double mean_length_ = 1;
+  std::uint32_t number_ = 0, left_ = 0, right_ = 0, begin_ = 0, end_ = 0;
+  std::vector<VertexState> vertex_;
+  std::vector<std::uint32_t> on_path_;  ///< number of the border whose new path runs along the half-edge
+  using Entry = std::pair<std::uint32_t, std::uint32_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
+  std::vector<std::uint32_t> open_, changed_;
+  std::int64_t grown_left_ = 0;
+};
+
+}  // namespace
+
+void straighten_borders(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const SizeLimits& limits,
+                        Partition& partition) {
+  Straightener(mesh, twins, limits, partition).run();
+}
+
+}  // namespace ramcdb::chartify
