@@ -43,6 +43,15 @@ void read_obj(const FileBytes& file, MeshData& mesh, const Progress& progress);
 void read_off(const FileBytes& file, MeshData& mesh, const Progress& progress);
 void read_stl(const FileBytes& file, MeshData& mesh, const Progress& progress);
 
+/// Ends a face of so many corners, which are there already. Sizes are kept from the first face on that is no triangle.
+inline void end_face(MeshData& mesh, std::uint32_t corners) {
+  if (mesh.face_sizes.empty()) {
+    if (corners == 3) return;
+    mesh.face_sizes.assign((mesh.corners.size() - corners) / 3, 3);
+  }
+  mesh.face_sizes.push_back(corners);
+}
+
 /// Walks text line by line and word by word, without locale and without copying.
 class TextScanner {
  public:

@@ -3,12 +3,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <limits>
 
 namespace ramcdb::mesh_file {
 namespace {
 
-constexpr double kLargest = std::numeric_limits<float>::max();
 /// From here on numbers round to infinity: half a step above the largest float32, 2^128 - 2^103.
 constexpr double kTooLarge = 0x1.ffffffp127;
 
@@ -48,12 +46,6 @@ double unit_of_last_digit(std::string_view text) {
 }
 
 }  // namespace
-
-double nearest_float(double value) {
-  if (value > kLargest) return kLargest;
-  if (value < -kLargest) return -kLargest;
-  return static_cast<double>(static_cast<float>(value));
-}
 
 bool float_holds(std::string_view text, double value) {
   if (std::abs(value) >= kTooLarge) return false;

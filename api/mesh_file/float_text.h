@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <string_view>
 
 namespace ramcdb::mesh_file {
@@ -11,6 +13,9 @@ namespace ramcdb::mesh_file {
 [[nodiscard]] bool float_holds(std::string_view text, double value);
 
 /// The float32 nearest to `value`, of which float_holds was true.
-[[nodiscard]] double nearest_float(double value);
+[[nodiscard]] inline double nearest_float(double value) {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  return static_cast<double>(static_cast<float>(std::clamp(value, -kLargest, kLargest)));
+}
 
 }  // namespace ramcdb::mesh_file

@@ -13,16 +13,20 @@ namespace {
 
 constexpr std::size_t kMostVertices = 0xfffffffe;
 
-void check(const FileBytes& file, const MeshData& mesh) {
+/// What all formats have in common; rounds text to the scalar that it was found to have.
+void check(const FileBytes& file, MeshData& mesh) {
   if (mesh.positions.empty())
     throw Error(Errc::invalid_argument, "the file holds no vertex", file.name(), "check that it is the right file");
   if (mesh.positions.size() > kMostVertices || mesh.face_count() > kMostVertices)
     throw Error(Errc::limit_exceeded, "the file holds more than 2^32 - 2 vertices or faces", file.name(), "split it");
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v)
-    for (int a = 0; a < 3; ++a)
-      if (!std::isfinite(mesh.positions[v][a]))
-        throw Error(Errc::invalid_argument, fmt::format("vertex {} has a coordinate that is not finite", v),
-                    file.name(), "repair the file; nothing was imported");
+  const bool floats = mesh.scalar == Scalar::float32;
+  for (Point& p : mesh.positions) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+      throw Error(Errc::invalid_argument,
+                  fmt::format("vertex {} has a coordinate that is not finite", &p - mesh.positions.data()), file.name(),
+                  "repair the file; nothing was imported");
+    if (floats) p = {nearest_float(p.x), nearest_float(p.y), nearest_float(p.z)};
+  }
   const auto wrong = std::find_if(mesh.corners.begin(), mesh.corners.end(),
                                   [&](std::uint32_t v) { return v >= mesh.positions.size(); });
   if (wrong != mesh.corners.end())
@@ -63,11 +67,7 @@ MeshData read_mesh(const std::filesystem::path& path, const std::function<void(d
       read_stl(file, mesh, progress);
       break;
   }
-  if (std::all_of(mesh.face_sizes.begin(), mesh.face_sizes.end(), [](std::uint32_t n) { return n == 3; }))
-    mesh.face_sizes.clear();
   check(file, mesh);
-  if (mesh.scalar == Scalar::float32)
-    for (Point& p : mesh.positions) p = {nearest_float(p.x), nearest_float(p.y), nearest_float(p.z)};
   return mesh;
 }
 

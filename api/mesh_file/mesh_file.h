@@ -64,9 +64,10 @@ struct MeshOutput {
 };
 
 /// Writes beside the file and renames into place, so that a failure leaves what was there. Text numbers are the
-/// shortest that read back the same, but for the first that tells float64 from float32. STL is binary; PLY is binary little-endian unless `ascii`.
-/// Throws disk_full, storage, and invalid_argument for coordinates that are not finite or too large for the scalar
-/// (STL: for float32), faces that name no vertex, ids or colours that are not one each; then nothing was touched.
+/// shortest that read back the same, but for the first that tells float64 from float32. STL is binary; PLY is binary
+/// little-endian unless `ascii`. Throws disk_full, storage, and invalid_argument for coordinates that are not finite or
+/// too large for the scalar (STL: for float32), faces that name no vertex, ids or colours that are not one each; then
+/// nothing was touched.
 void write_mesh(const std::filesystem::path& file, Format format, const MeshOutput& mesh, bool ascii = false);
 
 }  // namespace ramcdb::mesh_file

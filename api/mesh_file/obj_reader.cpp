@@ -50,7 +50,7 @@ class ObjReader {
       mesh_.corners.push_back(index(word.substr(0, word.find('/'))));
     }
     if (corners < 3) throw scan_.bad(fmt::format("a face has {} corners", corners));
-    mesh_.face_sizes.push_back(corners);
+    end_face(mesh_, corners);
   }
 
   std::uint32_t index(std::string_view word) {

@@ -89,7 +89,7 @@ class OffReader {
         throw scan_.bad(fmt::format("vertex index {} does not exist ({} vertices)", v, vertices));
       mesh_.corners.push_back(static_cast<std::uint32_t>(v));
     }
-    mesh_.face_sizes.push_back(static_cast<std::uint32_t>(corners));
+    end_face(mesh_, static_cast<std::uint32_t>(corners));
     std::size_t extra = 0;
     while (!scan_.word().empty()) ++extra;
     if (extra) dropped_.add("face colours");

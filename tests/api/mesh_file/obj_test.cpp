@@ -39,6 +39,12 @@ TEST(Obj, PolygonsAndTriangles) {
   EXPECT_EQ(mesh.corners, (Indices{0, 1, 2, 3, 0, 1, 2}));
 }
 
+TEST(Obj, APolygonBehindTriangles) {
+  const auto mesh = read_text("a.obj", kFour + "f 1 2 3\nf 2 3 4\nf 1 2 3 4\nf 1 2 3\n");
+  EXPECT_EQ(mesh.face_sizes, (Indices{3, 3, 4, 3}));
+  EXPECT_TRUE(is_sound(mesh));
+}
+
 TEST(Obj, FacesMayStandBeforeTheirVertices) {
   EXPECT_EQ(read_text("a.obj", "f 3 2 1\n" + kFour).corners, (Indices{2, 1, 0}));
 }

@@ -159,6 +159,18 @@ TEST(Ply, ListsThatTheFileHasNoRoomForAreRefusedBeforeMemoryIsTaken) {
   EXPECT_THAT(refusal("a.ply", triangle(kOneFace, "4000000000 0 1 2")), HasSubstr("cut off"));
 }
 
+TEST(Ply, IndicesOutOfRangeInBinary) {
+  for (const std::int32_t wrong : {1, -1, 0x7fffffff})
+    for (const std::uint8_t corners : {std::uint8_t{3}, std::uint8_t{4}})
+      for (int at = 0; at < corners; ++at) {
+        std::string bytes =
+            fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex 1\n{}{}end_header\n", kXyz, kOneFace);
+        bytes += std::string(12, '\0') + bytes_of(corners);
+        for (int c = 0; c < corners; ++c) bytes += bytes_of(c == at ? wrong : 0);
+        EXPECT_THAT(refusal("a.ply", bytes), HasSubstr(wrong < 0 ? "-1 is negative" : "does not exist (1 vertices)"));
+      }
+}
+
 struct Refused {
   const char *name, *words;
   std::string bytes;
@@ -195,9 +207,9 @@ TEST(Ply, WhatIsRefused) {
       {"float_list.ply", "no list",
        triangle("element face 1\nproperty list uchar float vertex_indices\n", "3 0 1 2\n")},
       {"strips.ply", "strips", triangle("element tristrips 1\nproperty list int int vertex_indices\n", "3 0 1 2\n")},
-      {"corners0.ply:13", "0 corners", triangle(faces, "0\n")},
-      {"corners1.ply:13", "1 corners", triangle(faces, "1 0\n")},
-      {"corners2.ply:13", "2 corners", triangle(faces, "2 0 1\n")},
+      {"corners0.ply:13", "0 corners", triangle(faces, "0\n\n\n\n\n\n\n\n")},
+      {"corners1.ply:13", "1 corners", triangle(faces, "1 0\n\n\n\n\n\n\n\n")},
+      {"corners2.ply:13", "2 corners", triangle(faces, "2 0 1\n\n\n\n\n\n\n\n")},
       {"corners_negative.ply:13", "negative", triangle(faces, "-3 0 1 2\n")},
       {"index3.ply:13", "vertex index 3", triangle(faces, "3 0 1 3\n")},
       {"index_negative.ply:13", "negative", triangle(faces, "3 0 -1 2\n")},

@@ -115,9 +115,19 @@ TEST(RoundTripIds, EveryBitOfAnIdStays) {
   for (const bool ascii : {false, true}) {
     const MeshData read = write_and_read("ids.ply", {mesh.positions, mesh.faces, Scalar::float64, ids, {}}, ascii);
     EXPECT_EQ(read.vertex_ids, ids);
+    EXPECT_EQ(read.scalar, Scalar::float64);
     EXPECT_EQ(bits(read.positions), bits(mesh.positions));
     EXPECT_EQ(triangles(read), mesh.faces);
   }
+}
+
+TEST(RoundTripIds, IdsDoNotMakeFloatsDoubles) {
+  const TestMesh mesh = hard_numbers(Scalar::float32);
+  const std::vector<std::uint64_t> ids(mesh.positions.size(), 0xfffffffffffffffdU);
+  const MeshData read = write_and_read("ids.ply", {mesh.positions, mesh.faces, Scalar::float32, ids, {}}, true);
+  EXPECT_EQ(read.scalar, Scalar::float32);
+  EXPECT_EQ(read.vertex_ids, ids);
+  EXPECT_EQ(bits(read.positions), bits(mesh.positions));
 }
 
 TEST(RoundTripColors, FaceColoursAreWrittenAndNamedAsDropped) {
