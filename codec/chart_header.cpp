@@ -52,7 +52,9 @@ class WordHash {
   }
 
   void add(std::uint32_t word) {
-    for (int shift = 0; shift < 32; shift += 8) bytes_[filled_++] = static_cast<std::uint8_t>(word >> shift);
+    std::uint8_t* to = bytes_.data() + filled_;
+    for (int i = 0; i < 4; ++i) to[i] = static_cast<std::uint8_t>(word >> (8 * i));  // one store, where it may be
+    filled_ += 4;
     if (filled_ == bytes_.size()) pass_on();
   }
   void add(LatticePoint p) {

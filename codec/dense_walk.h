@@ -121,20 +121,22 @@ class DenseWalk {
     FanPlace place;
     place.pivot = front_[pivot].vertex;
     place.angle = front_[pivot].angle;
-    place.normal = unit_or(normal_at(pivot), {0, 0, 1});
     std::uint32_t current = front_[pivot].prev;
     touched_.assign(1, current);
 
     const std::uint32_t inside = code_fan_size(pivot, place);
+    if (inside > 0) place.normal = unit_or(normal_at(pivot), {0, 0, 1});
     place.behind_current = front_[current].opposite;
     for (place.edges_left = inside; place.edges_left > 0; --place.edges_left) {
       place.current = front_[current].vertex;
       place.next = front_[front_[pivot].next].vertex;
       place.behind_next = front_[pivot].opposite;
-      if (place.edges_left != inside) place.angle = open_angle(place);
+      if (place.edges_left != inside) {
+        place.normal = unit_or(surface_[place.pivot].normal, place.normal);
+        place.angle = open_angle(place);
+      }
       current = code_apex(pivot, current, place);
       place.behind_current = place.current;
-      place.normal = unit_or(surface_[place.pivot].normal, place.normal);
     }
     close_fan(pivot, current);
     for (const std::uint32_t node : touched_)

@@ -78,12 +78,12 @@ void expect_refuses_other_lengths(const Decode& decode, const Buffer& blob) {
   }
 }
 
-/// Damages each byte in turn, in ten ways; returns how many of those blobs `decode` took. It has to check what it gets.
+/// Damages each byte in turn, in six ways; returns how many of those blobs `decode` took. It has to check what it gets.
 template <class Decode>
 int count_taken_when_damaged(const Decode& decode, const Buffer& blob) {
   int taken = 0;
   for (std::size_t i = 0; i < blob.size(); ++i)
-    for (const int change : {1, 2, 4, 8, 16, 32, 64, 128, 255, 85}) {
+    for (const int change : {1, 4, 32, 128, 255, 85}) {
       Buffer damaged = blob;
       damaged[i] = static_cast<std::uint8_t>(damaged[i] ^ change);
       taken += !refuses(decode, damaged);
