@@ -97,13 +97,13 @@ db::ChangedCharts changed_charts(MeshId mesh, const EncodedEdit& edit) {
   return changed;
 }
 
-std::string figures_of(const CommitReport& report, std::uint64_t bytes_written) {
+std::string figures_of(const CommitReport& report) {
   VersionFigures figures;
   figures.operation = "commit";
   figures.charts_touched = report.charts_reencoded;
   figures.vertices_moved = report.vertices_moved;
   figures.max_displacement = report.max_displacement;
-  figures.bytes_written = bytes_written;
+  figures.bytes_written = report.bytes_written;
   return encode_figures(figures);
 }
 
@@ -135,10 +135,10 @@ void publish(const Snapshot::Impl& base, const EncodedEdit& edit, const CommitOp
   info.message = options.message;
   info.attempt = attempt;
   info.changed = {changed_charts(base.root().mesh, edit)};
-  info.figures = figures_of(report, writer->bytes_put());
-  report.revision = writer->publish(info);
   report.parent = tip;
   report.bytes_written = writer->bytes_put();
+  info.figures = figures_of(report);
+  report.revision = writer->publish(info);
 }
 
 }  // namespace

@@ -200,7 +200,7 @@ bool Environment::find_tables() {
 
 void Environment::require_own_process() const {
   if (::getpid() != process_)
-    throw Error(Errc::storage, "the repository was opened before a fork", file_.string(), "open it again in the child");
+    throw Error(Errc::storage, "the repository was opened before a fork", file_.string(), "fork first and open then");
 }
 
 std::unique_ptr<Transaction> Environment::read() { return std::unique_ptr<Transaction>(new Transaction(*this, false)); }

@@ -64,7 +64,7 @@ class TransactionReader : public BlobReader {
 
 /// The stores that this process has open, by device and inode of their blob file: LMDB must not open a file twice.
 struct Registry {
-  using Key = std::tuple<pid_t, dev_t, ino_t>;
+  using Key = std::pair<dev_t, ino_t>;
   std::mutex mutex;
   std::map<Key, std::weak_ptr<StoreImpl>> open;
 
@@ -79,7 +79,7 @@ Registry::Key registry_key(const Layout& layout) {
   if (::stat(layout.blobs.c_str(), &info) != 0)
     throw Error(Errc::corrupt, "half of the repository is missing", layout.blobs.string(),
                 "restore both files from the same backup");
-  return {::getpid(), info.st_dev, info.st_ino};
+  return {info.st_dev, info.st_ino};
 }
 
 bool may_write(const Layout& layout) {
@@ -170,6 +170,8 @@ std::shared_ptr<Store> Store::open(const fs::path& folder, Access access) {
   const std::lock_guard<std::mutex> alone(registry.mutex);
   std::weak_ptr<StoreImpl>& entry = registry.open[registry_key(layout)];
   auto store = entry.lock();
+  // What a forked child inherits open cannot be opened beside it: both stores keep locks by process.
+  if (store) store->environment().require_own_process();
   if (!store) {
     store = std::make_shared<StoreImpl>(layout, may_write(layout) ? Environment::Mode::write : Environment::Mode::read);
     entry = store;

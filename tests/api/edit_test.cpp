@@ -22,13 +22,6 @@ Region charts(std::initializer_list<std::uint32_t> ids) {
   return {{shape}, 0};
 }
 
-/// Key -> point of a whole mesh, with inner vertices told apart by nothing but their place in the sorted list.
-std::map<VertexKey, LatticePoint> by_key(const RegionMesh& mesh) {
-  std::map<VertexKey, LatticePoint> points;
-  for (std::size_t v = 0; v < mesh.keys.size(); ++v) points.emplace(mesh.keys[v], mesh.points[v]);
-  return points;
-}
-
 /// Patch vertices whose key is of a kind.
 std::vector<Patch::Mesh::VertexHandle> vertices_of_kind(const Patch& patch, VertexKey::Where where) {
   std::vector<Patch::Mesh::VertexHandle> found;
@@ -317,7 +310,10 @@ TEST(Commit, KeepsTheFiguresOfInfoTrue) {
   auto edit = repository->begin_edit();
   Patch& patch = edit.checkout(charts({3, 4, 5}));
   int n = 0;
-  for (const auto v : patch.mesh().all_vertices()) move(patch, v, ++n % 5, n % 3, -(n % 4));
+  for (const auto v : patch.mesh().all_vertices()) {
+    ++n;
+    move(patch, v, n % 5, n % 3, -(n % 4));
+  }
   (void)edit.commit(message("wobble"));
   // The running totals must be those of the blobs that the version really has.
   const Snapshot snapshot = repository->snapshot();
