@@ -1,11 +1,15 @@
 #include "chartify/chartify.h"
 
+#include <string>
+
 #include "chartify/face_moves.h"
 #include "chartify/growth.h"
 #include "chartify/packing.h"
 #include "chartify/paper_lloyd.h"
 #include "chartify/rebalance.h"
+#include "chartify/split.h"
 #include "chartify/straighten.h"
+#include "ramcdb/error.h"
 
 namespace ramcdb::chartify {
 namespace {
@@ -25,6 +29,7 @@ Partition refined_charts(const IndexedMesh& mesh, const std::vector<HalfEdge>& t
       grow_charts(mesh, neighbours, components, kLloydIterations, [&](double done) { progress(kGrowthShare * done); });
   FaceMover mover(twins, limits, partition);
   rebalance(mover, limits, static_cast<std::uint32_t>(partition.sizes.size()));
+  split_oversized(mesh, neighbours, limits, partition);
   for (int i = 0; i < kRefinements; ++i) {
     progress(kGrowthShare + (1 - kGrowthShare) * i / kRefinements);
     move_faces(mover);
@@ -44,6 +49,9 @@ Partition paper_charts(const IndexedMesh& mesh, const std::vector<HalfEdge>& twi
 }  // namespace
 
 Charts chartify(const IndexedMesh& mesh, const Options& options) {
+  if (options.target_faces == 0 || options.target_faces > kMostTargetFaces)
+    throw Error(Errc::invalid_argument, "charts of " + std::to_string(options.target_faces) + " faces", "chartify",
+                "aim at 1 to " + std::to_string(kMostTargetFaces) + " faces");
   const std::vector<HalfEdge> twins = find_twins(mesh, group_half_edges(mesh));
   const Neighbours neighbours = find_neighbours(twins);
   const Regions components = find_components(neighbours, options.target_faces);
@@ -55,6 +63,7 @@ Charts chartify(const IndexedMesh& mesh, const Options& options) {
   charts.chart_of_isolated_vertex = place_isolated_vertices(mesh, options.target_faces, partition);
   charts.chart_of_face = std::move(partition.chart_of_face);
   charts.chart_count = static_cast<std::uint32_t>(partition.sizes.size());
+  if (options.progress) options.progress(1);
   return charts;
 }
 

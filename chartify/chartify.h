@@ -34,20 +34,25 @@ enum class Method {
   paper,    ///< Lloyd with cost (1)-(3) and the repairs of section 4.3 of the paper, for comparison
 };
 
+/// Larger charts would be too large for the chart codec.
+inline constexpr std::uint32_t kMostTargetFaces = 200'000;
+
 struct Options {
-  std::uint32_t target_faces = 5000;
+  std::uint32_t target_faces = 5000;  ///< 1 .. kMostTargetFaces
   Method method = Method::refined;
   unsigned threads = 1;                                 ///< changes the time, never the result
   std::function<void(double done)> progress = nullptr;  ///< 0..1; may throw to cancel
 };
 
 /// Cuts a mesh into charts. REQUIRES: canonical order. Returns for every face the chart it belongs to, and for every
-/// isolated vertex likewise. Chart numbers are 0 .. chart_count - 1 along the Hilbert curve, none is empty.
+/// isolated vertex likewise; every chart is one piece, or holds whole components. Chart numbers are 0 .. chart_count -
+/// 1 along the Hilbert curve, none is empty.
 struct Charts {
   std::uint32_t chart_count = 0;
   std::vector<std::uint32_t> chart_of_face;
   std::vector<std::uint32_t> chart_of_isolated_vertex;  ///< in the order of the mesh's isolated vertices
 };
+/// Errors: invalid_argument for a target out of range.
 [[nodiscard]] Charts chartify(const IndexedMesh& mesh, const Options& options);
 
 }  // namespace ramcdb::chartify

@@ -13,12 +13,14 @@ namespace ramcdb::chartify {
 struct SizeLimits {
   explicit SizeLimits(std::uint32_t target_faces)
       : target(target_faces),
+        ceiling(target_faces + target_faces / 2),
         cap(target_faces + target_faces / 10),
         floor(target_faces / 5 * 3),
         hard_floor(target_faces / 10 * 3) {}
 
   std::uint32_t target;
-  std::uint32_t cap;         ///< 1.10 of the target
+  std::uint32_t ceiling;     ///< 1.50 of the target, where charts are split
+  std::uint32_t cap;         ///< 1.10
   std::uint32_t floor;       ///< 0.60
   std::uint32_t hard_floor;  ///< 0.30, for moves of many faces at once
 };

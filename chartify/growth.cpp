@@ -69,7 +69,6 @@ class Grower {
       for (std::size_t e = 3 * std::size_t{face}; e < 3 * std::size_t{face} + 3; ++e) {
         const std::uint32_t g = neighbours_[e];
         if (g == kNone || partition_.chart_of_face[g] != kNone || next_key >= best[g]) continue;
-        if (regions_.region_of_face[g] != regions_.region_of_face[face]) continue;
         best[g] = next_key;
         queue.push(next_key, {g, chart});
       }

@@ -9,8 +9,8 @@
 /// method on the dual graph, in integers.
 namespace ramcdb::chartify {
 
-/// Cuts every region into as many charts as it says, of about equal size. What no seed of a region reaches over edges
-/// within it stays kNone.
+/// Cuts every region into as many charts as it says, of about equal size. What no seed of a region reaches stays kNone.
+/// REQUIRES: no adjacency between faces of different regions.
 /// \param iterations of moving the seeds and growing again
 [[nodiscard]] Partition grow_charts(const IndexedMesh& mesh, const Neighbours& neighbours, const Regions& regions,
                                     int iterations, const Progress& progress);

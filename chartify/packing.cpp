@@ -7,7 +7,8 @@
 namespace ramcdb::chartify {
 namespace {
 
-constexpr std::uint64_t kIsolatedPerTarget = 4;  // isolated vertices that a chart takes, in targets
+// Isolated vertices that a chart takes: in targets, and at most (the codec limits the vertices of a chart).
+constexpr std::uint32_t kIsolatedPerTarget = 4, kMostIsolated = 200'000;
 
 std::vector<std::uint32_t> isolated_vertices(const IndexedMesh& mesh) {
   std::vector<std::uint8_t> used(mesh.positions.size(), 0);
@@ -42,7 +43,7 @@ std::vector<std::uint32_t> place_isolated_vertices(const IndexedMesh& mesh, std:
   const std::vector<std::uint32_t> isolated = isolated_vertices(mesh);
   if (isolated.empty()) return {};
   const HilbertCells cells(mesh);
-  const std::uint64_t most = kIsolatedPerTarget * target;
+  const std::uint64_t most = std::min(kIsolatedPerTarget * target, kMostIsolated);
   std::vector<std::uint64_t> count(partition.sizes.size(), 0);
   std::vector<std::uint32_t> charts;
   std::uint32_t face = 0, overflow = kNone;

@@ -3,14 +3,13 @@
 #include <map>
 #include <set>
 
-#include "chartify/growth.h"
 #include "chartify/paper_lloyd.h"
+#include "chartify/split.h"
 
 namespace ramcdb::chartify {
 namespace {
 
-constexpr int kRounds = 4;           // a cut may make a new abnormal chart
-constexpr int kSplitIterations = 3;  // of growth within a chart
+constexpr int kRounds = 4;  // a cut may make a new abnormal chart
 constexpr std::uint32_t kSmallestSplit = 24;
 
 /// What the border of every chart looks like: which charts it meets, and along how many separate stretches.
@@ -88,18 +87,6 @@ bool merge_islands(const BorderSurvey& survey, Partition& partition) {
     if (c != kNone) c = to[c];
   renumber(partition);
   return true;
-}
-
-/// Cuts chart c into parts[c] charts of about the same size.
-void split_charts(const IndexedMesh& mesh, const Neighbours& neighbours, const std::vector<std::uint32_t>& parts,
-                  Partition& partition) {
-  const Regions regions{partition.chart_of_face, partition.sizes, parts};
-  const Partition split = grow_charts(mesh, neighbours, regions, kSplitIterations, nullptr);
-  const auto offset = static_cast<std::uint32_t>(partition.sizes.size());
-  for (std::size_t f = 0; f < partition.chart_of_face.size(); ++f)
-    if (split.chart_of_face[f] != kNone) partition.chart_of_face[f] = offset + split.chart_of_face[f];
-  partition.sizes.insert(partition.sizes.end(), split.sizes.begin(), split.sizes.end());
-  renumber(partition);
 }
 
 }  // namespace

@@ -62,14 +62,14 @@ std::vector<std::uint32_t> stray_pieces(const Pieces& pieces, const std::vector<
   return strays;
 }
 
-/// The chart other than its own that a set of faces shares most edges with; ties to the smaller, then the lower number.
-std::uint32_t closest_chart(const Neighbours& neighbours, const Partition& partition,
-                            const std::vector<std::uint32_t>& faces) {
-  const std::uint32_t own = partition.chart_of_face[faces.front()];
+/// Of the charts around a piece's faces the one with most edges to them, not counting faces of pieces that wait; ties
+/// to the smaller chart, then to the lower number.
+std::uint32_t closest_chart(const Neighbours& neighbours, const Partition& partition, const Pieces& pieces,
+                            const std::vector<std::uint8_t>& waits, const std::vector<std::uint32_t>& faces) {
   std::map<std::uint32_t, std::uint32_t> edges;
   for (const std::uint32_t f : faces)
     for (std::size_t e = 3 * std::size_t{f}; e < 3 * std::size_t{f} + 3; ++e)
-      if (neighbours[e] != kNone && partition.chart_of_face[neighbours[e]] != own)
+      if (neighbours[e] != kNone && !waits[pieces.piece_of_face[neighbours[e]]])
         ++edges[partition.chart_of_face[neighbours[e]]];
   std::uint32_t best = kNone;
   for (const auto& [chart, count] : edges)
@@ -85,7 +85,7 @@ Regions find_components(const Neighbours& neighbours, std::uint32_t target) {
   Pieces pieces = find_pieces(neighbours, [](std::uint32_t, std::uint32_t) { return true; });
   Regions out{std::move(pieces.piece_of_face), std::move(pieces.sizes), {}};
   for (const std::uint64_t size : out.sizes)
-    out.charts.push_back(2 * size < target ? 0 : static_cast<std::uint32_t>((2 * size + target) / (2 * target)));
+    out.charts.push_back(2 * size < target ? 0 : static_cast<std::uint32_t>((2 * size + target) / (2ULL * target)));
   return out;
 }
 
@@ -98,16 +98,22 @@ void merge_pieces(const Neighbours& neighbours, Partition& partition) {
   std::vector<std::vector<std::uint32_t>> faces(pieces.sizes.size());
   for (std::uint32_t f = 0; f < chart_of_face.size(); ++f) chart_of_piece[pieces.piece_of_face[f]] = chart_of_face[f];
   const std::vector<std::uint32_t> strays = stray_pieces(pieces, chart_of_piece, partition.sizes.size());
-  std::vector<std::uint8_t> is_stray(pieces.sizes.size(), 0);
-  for (const std::uint32_t p : strays) is_stray[p] = 1;
+  std::vector<std::uint8_t> waits(pieces.sizes.size(), 0);
+  for (const std::uint32_t p : strays) waits[p] = 1;
   for (std::uint32_t f = 0; f < chart_of_face.size(); ++f)
-    if (is_stray[pieces.piece_of_face[f]]) faces[pieces.piece_of_face[f]].push_back(f);
-  for (const std::uint32_t p : strays) {
-    const std::uint32_t to = closest_chart(neighbours, partition, faces[p]);
-    if (to == kNone) continue;
-    partition.sizes[chart_of_face[faces[p].front()]] -= pieces.sizes[p];
-    partition.sizes[to] += pieces.sizes[p];
-    for (const std::uint32_t f : faces[p]) partition.chart_of_face[f] = to;
+    if (waits[pieces.piece_of_face[f]]) faces[pieces.piece_of_face[f]].push_back(f);
+  for (bool any = true; any;) {  // strays among strays wait until one beside them has joined
+    any = false;
+    for (const std::uint32_t p : strays) {
+      if (!waits[p]) continue;
+      const std::uint32_t to = closest_chart(neighbours, partition, pieces, waits, faces[p]);
+      if (to == kNone) continue;
+      partition.sizes[chart_of_face[faces[p].front()]] -= pieces.sizes[p];
+      partition.sizes[to] += pieces.sizes[p];
+      for (const std::uint32_t f : faces[p]) partition.chart_of_face[f] = to;
+      waits[p] = 0;
+      any = true;
+    }
   }
 }
 
