@@ -3,6 +3,8 @@
 #include <xxhash.h>
 
 #include <array>
+#include <bit>
+#include <cstring>
 #include <memory>
 #include <new>
 
@@ -52,8 +54,8 @@ class WordHash {
   }
 
   void add(std::uint32_t word) {
-    std::uint8_t* to = bytes_.data() + filled_;
-    for (int i = 0; i < 4; ++i) to[i] = static_cast<std::uint8_t>(word >> (8 * i));  // one store, where it may be
+    if constexpr (std::endian::native != std::endian::little) word = swapped(word);
+    std::memcpy(bytes_.data() + filled_, &word, 4);
     filled_ += 4;
     if (filled_ == bytes_.size()) pass_on();
   }
@@ -66,6 +68,7 @@ class WordHash {
   }
 
  private:
+  static std::uint32_t swapped(std::uint32_t x) { return x << 24 | (x << 8 & 0xff0000) | (x >> 8 & 0xff00) | x >> 24; }
   void pass_on() {
     (void)XXH3_64bits_update(state_.get(), bytes_.data(), filled_);
     filled_ = 0;
