@@ -196,6 +196,7 @@ DecodedChart decode_chart(Bytes blob, std::span<const LatticePoint> border, std:
   require_range(range, Errc::corrupt);
   ByteReader reader(blob, kBlob);
   const ChartHeader header = take_chart_header(reader, range);
+  if (border.size() + header.counts.inner_vertices > kMaxChartVertices) reader.fail("declares too many vertices");
 
   DecodedChart decoded;
   decoded.coding = header.coding;

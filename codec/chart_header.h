@@ -27,10 +27,10 @@ struct ChartHeader {
 /// Formats that were ever written: 1.
 inline constexpr std::uint8_t kChartFormat = 1;
 
-/// What a chart may have: a hundred times more than pays, and little enough that the worst blob takes a decoder some
-/// 200 MB and a second. Encoders refuse more, decoders do not believe it.
-inline constexpr std::uint32_t kMaxChartVertices = 1u << 20;
-inline constexpr std::uint32_t kMaxChartFaces = 1u << 21;
+/// What a chart may have: a hundred times more than pays, and little enough that the worst blob takes a decoder less
+/// than 256 MB and some seconds. Encoders refuse more, decoders do not believe it.
+inline constexpr std::uint32_t kMaxChartVertices = 1u << 19;
+inline constexpr std::uint32_t kMaxChartFaces = 1u << 20;
 
 void put_chart_header(Buffer& out, const ChartHeader& header);
 

@@ -7,12 +7,12 @@ namespace ramcdb::codec {
 namespace {
 
 template <class Walk>
-DenseChart result_of(const Walk& walk, std::uint64_t total_cost) {
+DenseChart result_of(Walk& walk, std::uint64_t total_cost) {
   DenseChart chart;
-  const DenseSurface& surface = walk.surface();
+  DenseSurface& surface = walk.surface();
   chart.positions.reserve(surface.vertex_count());
   for (std::uint32_t v = 0; v < surface.vertex_count(); ++v) chart.positions.push_back(surface[v].position);
-  chart.faces = surface.faces();
+  chart.faces = surface.release_faces();
   chart.geometry_cost = walk.geometry_cost();
   chart.connectivity_cost = total_cost - chart.geometry_cost;
   return chart;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "codec/dense_math.h"
@@ -47,7 +48,8 @@ class DenseSurface {
   [[nodiscard]] bool has_all_vertices() const { return vertices_.size() == max_vertices_; }
   [[nodiscard]] bool has_all_faces() const { return faces_.size() == max_faces_; }
   [[nodiscard]] std::size_t faces_left() const { return max_faces_ - faces_.size(); }
-  [[nodiscard]] const std::vector<Triangle>& faces() const { return faces_; }
+  /// All faces; the surface has none afterwards.
+  [[nodiscard]] std::vector<Triangle> release_faces() { return std::move(faces_); }
 
   /// The number that the next vertex will get.
   [[nodiscard]] std::uint32_t next_vertex() const {

@@ -68,7 +68,8 @@ class DenseWalk {
     while (!surface_.has_all_vertices()) code_isolated();
   }
 
-  [[nodiscard]] const DenseSurface& surface() const { return surface_; }
+  /// What was coded; may be taken apart after run().
+  [[nodiscard]] DenseSurface& surface() { return surface_; }
   /// What positions took, in 1/256 bit; the rest is connectivity.
   [[nodiscard]] std::uint64_t geometry_cost() const { return geometry_cost_; }
 

@@ -172,7 +172,7 @@ TEST(ChartCodec, RefusesWhatIsNoChart) {
   bad.positions[1].y = kMaxLatticeCoordinate + 1;
   EXPECT_EQ(code_of(bad), Errc::invalid_argument);
   bad = good;
-  bad.positions.resize((1u << 20) + 1);
+  bad.positions.resize((1u << 19) + 1);
   EXPECT_EQ(code_of(bad), Errc::limit_exceeded);
   EXPECT_EQ(code_of(good, {{std::numeric_limits<std::int32_t>::min(), 0, 0}, {0, 0, 0}}), Errc::invalid_argument);
   EXPECT_EQ(code_of(good), Errc::cancelled);
