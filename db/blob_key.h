@@ -10,49 +10,47 @@
 
 namespace ramcdb::db {
 
-/// The LMDB databases: `main` is the unnamed one of the file and holds all kinds of which there is little, for each
-/// database needs pages of its own. The others are named.
-enum class Table : std::uint8_t { main, wire, chart, attribute };
-inline constexpr std::size_t kTableCount = 4;
-inline constexpr std::array<const char*, kTableCount> kTableNames{nullptr, "wire", "chart", "attribute"};
-
-[[nodiscard]] Table table_of(Kind kind);
 [[nodiscard]] const char* kind_name(Kind kind);
 
-/// A key as LMDB holds it, big-endian so that keys sort by mesh, then object, then version, then part:
+/// A key as LMDB holds it. All blobs are in one table: a mesh's lie together, kind by kind, in the order of ids, and
+/// the blobs of a mesh that is imported come behind all others, so that they are appended.
 ///
-///     wire, chart   mesh:u16 | id:u32 | version:u32 | part:u16                          12 bytes
-///     attribute     mesh:u16 | layer:u16 | id:u32 | version:u32 | part:u16              14 bytes
-///     main          255-kind:u8 | mesh:u16 | layer:u16 | id:u32 | version:u32 | part:u16    15 bytes
+///     key    = mesh number | place of the kind u8 | [layer number] | id number | version number | part number
+///     number = 1 to 5 bytes that sort like their values:
+///              value <= 240         value
+///              value <= 2,287       241 + (value - 240) / 256, (value - 240) % 256
+///              value <= 67,823      249, value - 2,288 in 2 bytes, big-endian
+///              value < 2^24         250, value in 3 bytes
+///              else                 251, value in 4 bytes
 ///
-/// In `main` the names of the other tables come first and pages last, so that the pages of a new mesh are appended.
+/// Attributes and pending lists have a layer.
 class EncodedKey {
  public:
   EncodedKey(const BlobKey& key, std::uint16_t part);
 
-  [[nodiscard]] const std::uint8_t* data() const { return bytes_.data(); }
-  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] Bytes bytes() const { return {bytes_.data(), size_}; }
   /// The bytes that all parts of one blob have in common.
-  [[nodiscard]] std::size_t blob_prefix() const { return size_ - 2; }
+  [[nodiscard]] Bytes blob_prefix() const { return {bytes_.data(), prefix_}; }
   void set_part(std::uint16_t part);
 
   friend bool operator<(const EncodedKey& a, const EncodedKey& b) {
-    return std::lexicographical_compare(a.data(), a.data() + a.size(), b.data(), b.data() + b.size());
+    return std::lexicographical_compare(a.bytes_.begin(), a.bytes_.begin() + a.size_, b.bytes_.begin(),
+                                        b.bytes_.begin() + b.size_);
   }
 
  private:
-  void append(std::uint32_t value, int bytes);
+  void append(std::uint32_t value);
 
-  std::array<std::uint8_t, 15> bytes_{};
-  std::size_t size_ = 0;
+  std::array<std::uint8_t, 24> bytes_{};
+  std::uint8_t size_ = 0, prefix_ = 0;
 };
 
 struct DecodedKey {
   BlobKey key;
   std::uint16_t part = 0;
 };
-/// Nothing where the bytes are no key of the table.
-[[nodiscard]] std::optional<DecodedKey> decode_key(Table table, const std::uint8_t* data, std::size_t size);
+/// Nothing where the bytes are no key.
+[[nodiscard]] std::optional<DecodedKey> decode_key(Bytes bytes);
 
 /// "chart 17 of mesh 1, version 3"
 [[nodiscard]] std::string describe(const BlobKey& key);

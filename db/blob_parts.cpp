@@ -18,24 +18,22 @@ constexpr std::size_t kShortestFill = 64;  // a part shorter than this is not wo
 constexpr std::size_t kMaxParts = 0x10000;
 
 std::size_t node_size(const EncodedKey& key, std::size_t value) {
-  return (kNodeOverhead + key.size() + value + 1) & ~std::size_t{1};
+  return (kNodeOverhead + key.bytes().size() + value + 1) & ~std::size_t{1};
 }
 
 std::size_t longest_value(const EncodedKey& key, std::size_t room) {
-  const std::size_t overhead = kNodeOverhead + key.size();
+  const std::size_t overhead = kNodeOverhead + key.bytes().size();
   return std::min(room, kLongestNode) <= overhead ? 0 : (std::min(room, kLongestNode) & ~std::size_t{1}) - overhead;
 }
 
 std::uint64_t checksum(const BlobKey& key, Bytes payload) {
   const EncodedKey encoded(key, 0);
-  const std::uint64_t seed =
-      XXH3_64bits_withSeed(encoded.data(), encoded.blob_prefix(), static_cast<std::uint64_t>(key.kind));
+  const std::uint64_t seed = XXH3_64bits(encoded.blob_prefix().data(), encoded.blob_prefix().size());
   return XXH3_64bits_withSeed(payload.data(), payload.size(), seed);
 }
 
-bool is_part_of(Bytes key, const EncodedKey& wanted, std::uint32_t part) {
-  if (key.size() != wanted.size() || std::memcmp(key.data(), wanted.data(), wanted.blob_prefix()) != 0) return false;
-  return (static_cast<std::uint32_t>(key[key.size() - 2]) << 8 | key[key.size() - 1]) == part;
+bool is_key(Bytes key, const EncodedKey& wanted) {
+  return std::equal(key.begin(), key.end(), wanted.bytes().begin(), wanted.bytes().end());
 }
 
 }  // namespace
@@ -49,12 +47,10 @@ Buffer seal(const BlobKey& key, Bytes payload) {
   return sealed;
 }
 
-PartWriter::PartWriter(const Transaction& transaction, Table table) : transaction_(transaction), table_(table) {}
-
 void PartWriter::put(const BlobKey& key, Bytes sealed) {
   EncodedKey encoded(key, 0);
   if (!appending_) {
-    Cursor cursor(transaction_, table_);
+    Cursor cursor(transaction_);
     appending_ = !cursor.seek(encoded);
   }
   const std::size_t longest = longest_value(encoded, kLeafRoom);
@@ -77,8 +73,9 @@ void PartWriter::put(const BlobKey& key, Bytes sealed) {
 }
 
 void PartWriter::put_part(const EncodedKey& key, Bytes part, bool append) {
-  MDB_val k{key.size(), const_cast<std::uint8_t*>(key.data())}, v{part.size(), const_cast<std::uint8_t*>(part.data())};
-  const MDB_dbi dbi = transaction_.table(table_);
+  MDB_val k{key.bytes().size(), const_cast<std::uint8_t*>(key.bytes().data())},
+      v{part.size(), const_cast<std::uint8_t*>(part.data())};
+  const MDB_dbi dbi = transaction_.table();
   const int rc = mdb_put(transaction_.get(), dbi, &k, &v, append ? MDB_APPEND : MDB_NOOVERWRITE);
   if (rc == MDB_KEYEXIST)
     throw Error(Errc::corrupt, "a blob that is to be written exists already", transaction_.file().string(),
@@ -92,14 +89,15 @@ void PartWriter::put_part(const EncodedKey& key, Bytes part, bool append) {
 }
 
 std::optional<Buffer> read_blob(Cursor& cursor, const BlobKey& key) {
-  const EncodedKey encoded(key, 0);
-  if (!cursor.seek(encoded) || !is_part_of(cursor.key(), encoded, 0)) return std::nullopt;
+  EncodedKey encoded(key, 0);
+  if (!cursor.seek(encoded) || !is_key(cursor.key(), encoded)) return std::nullopt;
   Buffer blob;
-  std::uint32_t part = 0;
+  std::uint16_t part = 0;
   do {
     const Bytes value = cursor.value();
     blob.insert(blob.end(), value.begin(), value.end());
-  } while (cursor.next() && is_part_of(cursor.key(), encoded, ++part));
+    encoded.set_part(++part);
+  } while (cursor.next() && is_key(cursor.key(), encoded));
   const auto damaged = [&] {
     return Error(Errc::corrupt, "a stored blob is damaged", describe(key),
                  "run `ramcdb verify`, restore from a backup");
@@ -114,13 +112,12 @@ std::optional<Buffer> read_blob(Cursor& cursor, const BlobKey& key) {
 }
 
 bool delete_blob(const Transaction& transaction, const BlobKey& key) {
-  const Table table = table_of(key.kind);
   EncodedKey encoded(key, 0);
   bool any = false;
   for (std::uint32_t part = 0; part < kMaxParts; ++part) {
     encoded.set_part(static_cast<std::uint16_t>(part));
-    MDB_val k{encoded.size(), const_cast<std::uint8_t*>(encoded.data())};
-    const int rc = mdb_del(transaction.get(), transaction.table(table), &k, nullptr);
+    MDB_val k{encoded.bytes().size(), const_cast<std::uint8_t*>(encoded.bytes().data())};
+    const int rc = mdb_del(transaction.get(), transaction.table(), &k, nullptr);
     if (rc == MDB_NOTFOUND) break;
     check_lmdb(rc, transaction.file());
     any = true;

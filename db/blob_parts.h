@@ -17,11 +17,11 @@ inline constexpr std::size_t kChecksumBytes = 8;
 /// The payload followed by its checksum.
 [[nodiscard]] Buffer seal(const BlobKey& key, Bytes payload);
 
-/// Puts sealed blobs into one table, in ascending key order. Where a key comes behind all that the table holds, its
-/// parts fill the last leaf page to the rim (measured: store over payload 1.04, against 1.41 with whole values).
+/// Puts sealed blobs in ascending key order. Where a key comes behind all that are there, its parts fill the last leaf
+/// page to the rim (measured: store over payload 1.04, against 1.41 with whole values).
 class PartWriter {
  public:
-  PartWriter(const Transaction& transaction, Table table);
+  explicit PartWriter(const Transaction& transaction) : transaction_(transaction) {}
 
   /// Throws corrupt when the key exists already: blobs are written once. limit_exceeded above 130 MB.
   void put(const BlobKey& key, Bytes sealed);
@@ -30,8 +30,7 @@ class PartWriter {
   void put_part(const EncodedKey& key, Bytes part, bool append);
 
   const Transaction& transaction_;
-  Table table_;
-  bool appending_ = false;  ///< all keys so far came behind what the table holds
+  bool appending_ = false;  ///< all keys so far came behind what was there
   std::size_t room_ = 0;    ///< in the last leaf page, as far as known
   std::size_t leaf_pages_ = 0;
 };

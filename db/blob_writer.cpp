@@ -113,22 +113,18 @@ class Attempt : public Writer {
     return record;
   }
 
-  /// One LMDB transaction: the held blobs, table by table in key order, their pending list and the number given away.
+  /// One LMDB transaction: the held blobs in key order, their pending list and the number given away.
   void write_held() {
     std::sort(held_.begin(), held_.end(), [](const HeldBlob& a, const HeldBlob& b) { return a.order < b.order; });
     require_free_bytes(store_->layout().folder, space_for(held_bytes_));
     environment().reserve(2 * space_for(held_bytes_));
     const auto transaction = environment().write();
     drop_pending_lists(*transaction, finished_lists_);
-    std::array<std::vector<const HeldBlob*>, kTableCount> by_table;
     std::vector<BlobKey> keys;
+    PartWriter parts(*transaction);
     for (const HeldBlob& blob : held_) {
-      by_table[static_cast<std::size_t>(table_of(blob.key.kind))].push_back(&blob);
+      parts.put(blob.key, blob.sealed);
       keys.push_back(blob.key);
-    }
-    for (std::size_t t = 0; t < kTableCount; ++t) {
-      PartWriter parts(*transaction, static_cast<Table>(t));
-      for (const HeldBlob* blob : by_table[t]) parts.put(blob->key, blob->sealed);
     }
     put_pending_list(*transaction, keys);
     write_state(*transaction, state_);
@@ -143,7 +139,7 @@ class Attempt : public Writer {
     std::sort(keys.begin(), keys.end());
     if (chunks_ == 0xFFFF) throw Error(Errc::limit_exceeded, "an import writes more than 4 TB of blobs");
     const BlobKey key = pending_key(version(), chunks_++);
-    PartWriter(transaction, Table::main).put(key, seal(key, encode_key_list(keys)));
+    PartWriter(transaction).put(key, seal(key, encode_key_list(keys)));
   }
 
   std::shared_ptr<StoreImpl> store_;

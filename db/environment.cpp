@@ -68,7 +68,6 @@ Transaction::Transaction(Environment& environment, bool write)
 
 void Transaction::begin() {
   environment_.require_own_process();
-  has_tables_ = environment_.find_tables();
   const unsigned flags = write_ ? 0 : MDB_RDONLY;
   int rc = mdb_txn_begin(environment_.env_, nullptr, flags, &txn_);
   if (rc == MDB_READERS_FULL) {
@@ -82,39 +81,36 @@ void Transaction::begin() {
     rc = mdb_txn_begin(environment_.env_, nullptr, flags, &txn_);
   }
   check_lmdb(rc, environment_.file_);
-  if (!write_ || has_tables_) return;
-  making_tables_ = std::unique_lock<std::mutex>(environment_.tables_mutex_);
-  has_tables_ = environment_.open_handles(txn_, MDB_CREATE);
 }
 
 Transaction::~Transaction() {
   if (txn_ && ::getpid() == environment_.process_) mdb_txn_abort(txn_);
 }
 
-MDB_dbi Transaction::table(Table t) const { return environment_.tables_[static_cast<std::size_t>(t)]; }
+MDB_dbi Transaction::table() const { return environment_.table_; }
 
 const std::filesystem::path& Transaction::file() const { return environment_.file_; }
 
 void Transaction::commit() {
   MDB_txn* txn = std::exchange(txn_, nullptr);
   check_lmdb(mdb_txn_commit(txn), environment_.file_);
-  if (making_tables_) environment_.tables_open_ = true;
 }
 
 void Transaction::renew() {
   environment_.require_own_process();
   mdb_txn_reset(txn_);
-  if (has_tables_ && mdb_txn_renew(txn_) == MDB_SUCCESS) return;
+  if (mdb_txn_renew(txn_) == MDB_SUCCESS) return;
   mdb_txn_abort(std::exchange(txn_, nullptr));
   begin();
 }
 
-Cursor::Cursor(const Transaction& transaction, Table table) : file_(transaction.file()) {
-  check_lmdb(mdb_cursor_open(transaction.get(), transaction.table(table), &cursor_), file_);
+Cursor::Cursor(const Transaction& transaction) : file_(transaction.file()) {
+  check_lmdb(mdb_cursor_open(transaction.get(), transaction.table(), &cursor_), file_);
 }
 
 bool Cursor::seek(const EncodedKey& key) {
-  key_ = {key.size(), const_cast<std::uint8_t*>(key.data())};  // LMDB reads it and points it into the map
+  key_ = {key.bytes().size(),
+          const_cast<std::uint8_t*>(key.bytes().data())};  // LMDB reads it and points it into the map
   return move(MDB_SET_RANGE);
 }
 
@@ -135,7 +131,7 @@ Environment::Environment(std::filesystem::path file, Mode mode)
     if (mode != Mode::create) require_whole_file();
     MDB_txn* txn = nullptr;
     check_lmdb(mdb_txn_begin(env_, nullptr, MDB_RDONLY, &txn), file_);
-    const int rc = mdb_dbi_open(txn, nullptr, 0, &tables_[0]);
+    const int rc = mdb_dbi_open(txn, nullptr, 0, &table_);
     check_lmdb(rc == MDB_SUCCESS ? mdb_txn_commit(txn) : (mdb_txn_abort(txn), rc), file_);
     if (mode == Mode::create) check_lmdb(mdb_env_sync(env_, 1), file_);
   } catch (...) {
@@ -154,7 +150,6 @@ void Environment::open() {
   std::uint64_t map_size = first_map_size() ? first_map_size() : kUsualMapSize;
   for (;;) {
     check_lmdb(mdb_env_create(&env_), file_);
-    check_lmdb(mdb_env_set_maxdbs(env_, kTableCount), file_);
     check_lmdb(mdb_env_set_maxreaders(env_, kMaxReaders), file_);
     check_lmdb(mdb_env_set_mapsize(env_, map_size), file_);
     const int rc = mdb_env_open(env_, file_.c_str(), flags, 0666);
@@ -174,28 +169,6 @@ void Environment::require_whole_file() const {
   if (actual < expected)
     throw Error(Errc::corrupt, fmt::format("the blob file is cut short: {} of {} bytes", actual, expected),
                 file_.string(), "restore it from a backup");
-}
-
-bool Environment::open_handles(MDB_txn* txn, unsigned flags) {
-  for (std::size_t t = 1; t < kTableCount; ++t) {
-    const int rc = mdb_dbi_open(txn, kTableNames[t], flags, &tables_[t]);
-    if (rc == MDB_NOTFOUND) return false;
-    check_lmdb(rc, file_);
-  }
-  return true;
-}
-
-bool Environment::find_tables() {
-  if (tables_open_) return true;
-  const std::unique_lock<std::mutex> alone(tables_mutex_, std::try_to_lock);
-  if (!alone) return false;  // they are just being made
-  MDB_txn* txn = nullptr;
-  if (mdb_txn_begin(env_, nullptr, MDB_RDONLY, &txn) != MDB_SUCCESS) return false;  // the caller meets the same
-  if (open_handles(txn, 0))
-    tables_open_ = mdb_txn_commit(txn) == MDB_SUCCESS;  // keeps the handles
-  else
-    mdb_txn_abort(txn);
-  return tables_open_;
 }
 
 void Environment::require_own_process() const {

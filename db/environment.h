@@ -3,8 +3,6 @@
 #include <lmdb.h>
 #include <sys/types.h>
 
-#include <array>
-#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -21,16 +19,14 @@ void check_lmdb(int rc, const std::filesystem::path& file);
 
 class Environment;
 
-/// A transaction over all tables. Read transactions see one moment and block nobody.
+/// A transaction over all blobs. Read transactions see one moment and block nobody.
 class Transaction {
  public:
   Transaction(Transaction&&) = delete;
   ~Transaction();
 
   [[nodiscard]] MDB_txn* get() const { return txn_; }
-  /// Whether the named tables exist: not before the first version is written.
-  [[nodiscard]] bool has_tables() const { return has_tables_; }
-  [[nodiscard]] MDB_dbi table(Table t) const;
+  [[nodiscard]] MDB_dbi table() const;
   [[nodiscard]] const std::filesystem::path& file() const;
 
   /// Of a write transaction: makes it durable. Throws, and leaves nothing, when it cannot be.
@@ -45,17 +41,14 @@ class Transaction {
 
   Environment& environment_;
   bool write_;
-  std::shared_lock<std::shared_mutex> map_;     ///< while held the map stays where it is
-  std::unique_lock<std::mutex> making_tables_;  ///< held by the first write transaction of all
-  bool has_tables_ = false;
+  std::shared_lock<std::shared_mutex> map_;  ///< while held the map stays where it is
   MDB_txn* txn_ = nullptr;
 };
 
-/// A cursor over one table of a transaction, which must outlive it.
+/// A cursor over the keys of a transaction, which must outlive it.
 class Cursor {
  public:
-  /// REQUIRES: the table exists.
-  Cursor(const Transaction& transaction, Table table);
+  explicit Cursor(const Transaction& transaction);
   Cursor(Cursor&&) = delete;
   ~Cursor() { mdb_cursor_close(cursor_); }
 
@@ -104,9 +97,6 @@ class Environment {
   friend class Transaction;
   void open();
   void require_whole_file() const;
-  /// Opens the handles of the named tables, where they exist; LMDB wants one transaction at a time to do so.
-  [[nodiscard]] bool find_tables();
-  [[nodiscard]] bool open_handles(MDB_txn* txn, unsigned flags);
   /// Another process grew the map: follow.
   void adopt_map_size();
 
@@ -114,10 +104,8 @@ class Environment {
   Mode mode_;
   pid_t process_;
   MDB_env* env_ = nullptr;
-  std::array<MDB_dbi, kTableCount> tables_{};
+  MDB_dbi table_ = 0;
   std::shared_mutex map_gate_;  ///< shared by transactions, exclusive while the map moves
-  std::mutex tables_mutex_;     ///< held while handles are opened
-  std::atomic<bool> tables_open_{false};
 };
 
 /// For tests, before a repository is opened: the size that memory maps begin with. 0 for the usual one.

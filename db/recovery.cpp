@@ -17,10 +17,10 @@ namespace {
 /// All keys of a rare kind, one per blob.
 std::vector<BlobKey> keys_of(const Transaction& transaction, Kind kind) {
   std::vector<BlobKey> keys;
-  Cursor cursor(transaction, Table::main);
+  Cursor cursor(transaction);
   if (!cursor.seek(EncodedKey({kind, MeshId(), 0, VersionId(), 0}, 0))) return keys;
   do {
-    const auto decoded = decode_key(Table::main, cursor.key().data(), cursor.key().size());
+    const auto decoded = decode_key(cursor.key());
     if (!decoded || decoded->key.kind != kind) break;
     if (decoded->part == 0) keys.push_back(decoded->key);
   } while (cursor.next());
@@ -30,10 +30,10 @@ std::vector<BlobKey> keys_of(const Transaction& transaction, Kind kind) {
 /// Versions with a commit record, newer than the newest row.
 std::set<VersionId> records_after(const Transaction& transaction, VersionId newest) {
   std::set<VersionId> versions;
-  Cursor cursor(transaction, Table::main);
+  Cursor cursor(transaction);
   if (!cursor.seek(EncodedKey(record_key(VersionId(newest.value + 1)), 0))) return versions;
   do {
-    const auto decoded = decode_key(Table::main, cursor.key().data(), cursor.key().size());
+    const auto decoded = decode_key(cursor.key());
     if (!decoded || decoded->key.kind != Kind::commit_record) break;
     versions.insert(decoded->key.version);
   } while (cursor.next());
@@ -47,7 +47,7 @@ void take_back(const Transaction& transaction, VersionId version) {
     if (list.version != version) continue;
     std::vector<BlobKey> keys;
     {
-      Cursor cursor(transaction, Table::main);
+      Cursor cursor(transaction);
       keys = decode_key_list(*read_blob(cursor, list), version);
     }
     for (const BlobKey& key : keys) (void)delete_blob(transaction, key);

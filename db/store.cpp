@@ -35,11 +35,8 @@ class TransactionReader : public BlobReader {
   }
 
   std::optional<Buffer> find(const BlobKey& key) override {
-    const Table table = table_of(key.kind);
-    if (table != Table::main && !transaction_->has_tables()) return std::nullopt;
-    auto& cursor = cursors_[static_cast<std::size_t>(table)];
-    if (!cursor) cursor = std::make_unique<Cursor>(*transaction_, table);
-    auto blob = read_blob(*cursor, key);
+    if (!cursor_) cursor_.emplace(*transaction_);
+    auto blob = read_blob(*cursor_, key);
     if (blob) {
       ++blobs_;
       bytes_ += blob->size() + kChecksumBytes;
@@ -48,7 +45,7 @@ class TransactionReader : public BlobReader {
   }
 
   void renew() override {
-    for (auto& cursor : cursors_) cursor.reset();
+    cursor_.reset();
     transaction_->renew();
   }
 
@@ -58,7 +55,7 @@ class TransactionReader : public BlobReader {
  private:
   std::shared_ptr<StoreImpl> store_;
   std::unique_ptr<Transaction> transaction_;
-  std::array<std::unique_ptr<Cursor>, kTableCount> cursors_;
+  std::optional<Cursor> cursor_;
   std::uint64_t blobs_ = 0, bytes_ = 0;
 };
 

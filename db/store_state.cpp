@@ -30,7 +30,7 @@ std::uint32_t get(Bytes in, std::size_t at, std::size_t bytes) {
 }  // namespace
 
 StoreState read_state(const Transaction& transaction) {
-  Cursor cursor(transaction, Table::main);
+  Cursor cursor(transaction);
   if (!cursor.first()) return {};
   const auto blob = read_blob(cursor, kStateKey);
   if (!blob || blob->size() < kSize || std::memcmp(blob->data(), kMagic.data(), kMagic.size()) != 0)
@@ -54,7 +54,7 @@ void write_state(const Transaction& transaction, const StoreState& state) {
   put(blob, state.seq, 4);
   put(blob, state.last_mesh, 4);
   (void)delete_blob(transaction, kStateKey);
-  PartWriter(transaction, Table::main).put(kStateKey, seal(kStateKey, blob));
+  PartWriter(transaction).put(kStateKey, seal(kStateKey, blob));
 }
 
 std::string random_id() {

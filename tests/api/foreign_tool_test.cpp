@@ -91,9 +91,7 @@ class ForeignTool : public ::testing::Test {
     return report;
   }
 
-  void remember(const FileMesh& mesh) {
-    original_ = snapped(repository_->snapshot().lattice(), mesh.positions);
-  }
+  void remember(const FileMesh& mesh) { original_ = snapped(repository_->snapshot().lattice(), mesh.positions); }
 
   TempRepository repository_{scan(8000), 400};
   fs::path file_;
