@@ -90,10 +90,12 @@ void require_local(const fs::path& folder) {
                 "memory maps and locks do not work across machines; keep it on a local disk");
 }
 
-/// What an init that was cut off may have left.
-bool is_leftover_of_create(const fs::path& name) {
-  const std::string text = name.string();
-  return text == "data.mdb" || text == "data.mdb-lock" || text == "pins" || text.starts_with("catalogue.sqlite.new");
+/// What an init that was cut off may have left. A blob file that was ever written to is none: somebody lost the
+/// catalogue, and these are the meshes.
+bool is_leftover_of_create(const fs::path& file) {
+  const std::string name = file.filename().string();
+  if (name == "data.mdb") return fs::file_size(file) <= 2 * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  return name == "data.mdb-lock" || name == "pins" || name.starts_with("catalogue.sqlite.new");
 }
 
 void require_empty(const Layout& layout) {
@@ -101,7 +103,7 @@ void require_empty(const Layout& layout) {
     throw Error(Errc::invalid_argument, "there is a repository already", layout.folder.string(),
                 "add meshes to it with `ramcdb import`, or choose another folder");
   for (const auto& entry : fs::directory_iterator(layout.folder))
-    if (!is_leftover_of_create(entry.path().filename()))
+    if (!is_leftover_of_create(entry.path()))
       throw Error(Errc::invalid_argument, "the folder is not empty", layout.folder.string(), "choose a new folder");
 }
 
@@ -109,7 +111,7 @@ void remove_files(const Layout& layout) {
   std::error_code ignored;
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(layout.folder, ignored))
-    if (is_leftover_of_create(entry.path().filename())) files.push_back(entry.path());
+    if (is_leftover_of_create(entry.path())) files.push_back(entry.path());
   for (const fs::path& file : files) fs::remove_all(file, ignored);
 }
 

@@ -67,6 +67,16 @@ TEST(StoreCreate, SweepsWhatAnUnfinishedCreateLeft) {
   for (const std::string& name : names_in(temp / "r")) EXPECT_EQ(name.find(".new"), std::string::npos) << name;
 }
 
+TEST(StoreCreate, LeavesTheBlobsOfARepositoryThatLostItsCatalogue) {
+  const TempStore temp;
+  const auto blobs = std::vector{make_blob(Kind::chart, 1, 100)};
+  const VersionId version = publish(*temp.open(), blobs);
+  fs::rename(temp / "catalogue.sqlite", temp.folder().parent_path() / "away");
+  expect_error(Errc::invalid_argument, "not empty", [&] { Store::create(temp.folder()); });
+  fs::rename(temp.folder().parent_path() / "away", temp / "catalogue.sqlite");
+  expect_blobs(*temp.open(), blobs, version);
+}
+
 TEST(StoreOpen, SaysWhatIsNoRepository) {
   const TempFolder temp;
   expect_error(Errc::not_found, "ramcdb init", [&] { (void)Store::open(temp / "none", Access::read); });
