@@ -1,7 +1,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "db/store.h"
+#include "tests/api/blobs_of.h"
 #include "tests/api/temp_repository.h"
 
 namespace ramcdb::test {
@@ -64,22 +64,6 @@ TEST(Import, MovesNoCoordinateByMoreThanHalfAStep) {
     EXPECT_LE(report.measured_error, report.info.max_error * (1 + 1e-9)) << bits << " bits";
     EXPECT_GT(report.measured_error, 0);
   }
-}
-
-/// All blobs of a mesh's charts, wires and pages, in id order.
-std::vector<Buffer> blobs_of(Repository& repository, const std::string& mesh) {
-  const auto store = db::Store::open(repository.folder(), db::Access::read);
-  const VersionId head = store->resolve("HEAD");
-  const auto roots = store->roots(head);
-  const auto root = std::find_if(roots.begin(), roots.end(), [&](const auto& r) { return r.name == mesh; });
-  const MeshInfo info = repository.snapshot(mesh).info();
-  const auto reader = store->reader();
-  std::vector<Buffer> blobs;
-  for (std::uint32_t id = 1; id <= info.charts; ++id)
-    blobs.push_back(reader->get({db::Kind::chart, root->mesh, id, root->root_version, 0}));
-  for (std::uint32_t id = 1; id <= info.wires; ++id)
-    blobs.push_back(reader->find({db::Kind::wire, root->mesh, id, root->root_version, 0}).value_or(Buffer{}));
-  return blobs;
 }
 
 TEST(Import, OfAnExportOnTheSameLatticeGivesTheSameBytes) {
