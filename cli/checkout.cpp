@@ -38,7 +38,13 @@ CheckoutReport checkout(const CheckoutOptions& options, const Region& region) {
   file.threads = options.threads;
   ProgressBar bar("checkout", options.mode.quiet);
   file.progress = bar.callback();
-  return repository.checkout_file(snapshot, snapshot.find(region), options.output.file, file);
+  ReadCost finding;
+  const std::vector<ChartId> charts = snapshot.find(region, &finding);
+  CheckoutReport report = repository.checkout_file(snapshot, charts, options.output.file, file);
+  report.blobs_read += finding.blobs;
+  report.pages_read += finding.pages;
+  report.bytes_read += finding.bytes;
+  return report;
 }
 
 int run_checkout(const CheckoutOptions& options) {

@@ -96,6 +96,8 @@ TEST_F(Json, CheckoutAndExport) {
   const auto part = json_of({"checkout", repo_, "--charts", "1,2", "-o", path("part.ply")});
   expect_starts_with(part, kCheckoutKeys);
   EXPECT_EQ(part["charts"], 2);
+  EXPECT_GE(part["pages_read"], 1) << "also those that finding the charts took";
+  EXPECT_LE(part["pages_read"], 4);
   const auto whole = json_of({"export", repo_, "-o", path("whole.ply")});
   expect_starts_with(whole, kCheckoutKeys);
   EXPECT_EQ(whole["vertices"], 3721);
