@@ -118,5 +118,17 @@ TEST(CanonicalOrderTies, NeighboursTellFacesOnEqualPositionsApart) {
   }
 }
 
+/// A face of three vertices on one point can be turned by nothing but its neighbours.
+TEST(CanonicalOrderTies, NeighboursTurnAFaceOnOnePoint) {
+  const TestMesh mesh{{{5, 5, 5}, {5, 5, 5}, {5, 5, 5}, {9, 0, 0}, {0, 9, 0}, {0, 0, 9}},
+                      {{0, 1, 2}, {1, 0, 3}, {2, 1, 4}, {0, 2, 5}}};
+  const CanonicalMesh canonical = canonical_order(on_lattice(mesh));
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const CanonicalMesh again = canonical_order(on_lattice(ramcdb::test::shuffled(mesh, seed)));
+    EXPECT_EQ(again.mesh.positions, canonical.mesh.positions) << "seed " << seed;
+    EXPECT_EQ(again.mesh.faces, canonical.mesh.faces) << "seed " << seed;
+  }
+}
+
 }  // namespace
 }  // namespace ramcdb::chartify::test

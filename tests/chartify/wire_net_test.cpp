@@ -146,5 +146,15 @@ TEST(WireNet, OfFacesThatAreHardlySurfaces) {
   EXPECT_FALSE(in_one_chart({points, {{0, 0, 0}, {0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 2, 1}}}).wires.empty());
 }
 
+/// The only face on its edges: there and back along one edge, and around the edge from the first vertex to itself.
+TEST(WireNet, OfALoneDegenerateFace) {
+  const WireNet net = in_one_chart({{{0, 0, 0}, {9, 0, 0}}, {{0, 0, 1}}});
+  EXPECT_EQ(net.charts[0].chart.loop_sizes, std::vector<std::uint32_t>{3});
+  ASSERT_EQ(net.wires.size(), 2U);
+  EXPECT_EQ(net.wires[0].vertices, (std::vector<std::uint32_t>{0, 0}));
+  EXPECT_EQ(net.wires[1].vertices, (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_EQ(net.wires[1].charts, (std::vector<std::uint32_t>{0, 0}));
+}
+
 }  // namespace
 }  // namespace ramcdb::chartify::test
