@@ -12,8 +12,10 @@ namespace ramcdb::db {
 namespace {
 
 // LMDB 0.9 on pages of 4,096 bytes: a leaf page has 4,080 bytes for nodes, a node is 8 bytes, key and value, rounded up
-// to even, and 2 bytes of index; one that takes more than half a page goes to pages of its own.
+// to even, and 2 bytes of index; one that takes more than half a page goes to pages of its own, 16 bytes less in all.
+constexpr std::size_t kPage = 4096, kPageHeader = 16;
 constexpr std::size_t kLeafRoom = 4080, kNodeOverhead = 10, kLongestNode = 2040;
+constexpr std::size_t kWorthAPage = 2800;  // two halves of it in leaf pages, which splits leave 70 % full, take as much
 constexpr std::size_t kShortestFill = 64;  // a part shorter than this is not worth its key
 constexpr std::size_t kMaxParts = 0x10000;
 
@@ -56,20 +58,26 @@ void PartWriter::put(const BlobKey& key, Bytes sealed) {
   const std::size_t longest = longest_value(encoded, kLeafRoom);
   if ((sealed.size() + longest - 1) / longest >= kMaxParts)
     throw Error(Errc::limit_exceeded, "a blob is larger than 130 MB", describe(key));
-  // Between older keys pages are split anyway: parts of equal size then leave the least waste.
-  const std::size_t parts = (sealed.size() + longest - 1) / longest;
-  const std::size_t equal = (sealed.size() + parts - 1) / parts;
   std::size_t at = 0;
   for (std::uint16_t part = 0; at < sealed.size(); ++part) {
-    std::size_t size = std::min(equal, sealed.size() - at);
-    if (appending_) {
-      const std::size_t rest = sealed.size() - at, fits = longest_value(encoded, room_);
-      size = std::min(rest, fits >= std::min(rest, kShortestFill) ? fits : longest);
-    }
+    const std::size_t rest = sealed.size() - at;
+    const std::size_t size = appending_ ? size_to_fill(encoded, rest) : size_between(encoded, rest);
     encoded.set_part(part);
     put_part(encoded, sealed.subspan(at, size), appending_);
     at += size;
   }
+}
+
+std::size_t PartWriter::size_to_fill(const EncodedKey& key, std::size_t rest) const {
+  const std::size_t fits = longest_value(key, room_);
+  return std::min(rest, fits >= std::min(rest, kShortestFill) ? fits : longest_value(key, kLeafRoom));
+}
+
+std::size_t PartWriter::size_between(const EncodedKey& key, std::size_t rest) {
+  const std::size_t longest = longest_value(key, kLeafRoom);
+  if (rest <= longest) return rest;
+  if (const std::size_t pages = (rest + kPageHeader) / kPage; pages > 0) return pages * kPage - kPageHeader;
+  return rest < kWorthAPage ? (rest + 1) / 2 : rest;
 }
 
 void PartWriter::put_part(const EncodedKey& key, Bytes part, bool append) {

@@ -5,11 +5,14 @@
 
 #include "db/environment.h"
 
-/// Blobs as LMDB holds them. LMDB gives a value over half a page whole pages of its own, so blobs are cut into parts
-/// that fill leaf pages:
+/// Blobs as LMDB holds them. LMDB gives a value over half a page whole pages of its own, so blobs are cut into
+/// parts that fill leaf pages:
 ///
 ///     value of part i = the blob's bytes, continued from part i - 1
 ///     blob            = payload | xxh3-64 of the payload, seeded by its key, little-endian
+///
+/// Where a blob comes between older ones, leaf pages would be split: there it takes as many whole pages as it fills,
+/// and only the rest goes to a leaf page.
 namespace ramcdb::db {
 
 inline constexpr std::size_t kChecksumBytes = 8;
@@ -18,7 +21,8 @@ inline constexpr std::size_t kChecksumBytes = 8;
 [[nodiscard]] Buffer seal(const BlobKey& key, Bytes payload);
 
 /// Puts sealed blobs in ascending key order. Where a key comes behind all that are there, its parts fill the last leaf
-/// page to the rim (measured: store over payload 1.04, against 1.41 with whole values).
+/// page to the rim (measured: store over payload 1.04, against 1.41 with whole values). Else parts are whole pages
+/// (measured on edits of four charts of 7 KB: growth over payload 1.41, against 2.23 with parts of half a page).
 class PartWriter {
  public:
   explicit PartWriter(const Transaction& transaction) : transaction_(transaction) {}
@@ -27,6 +31,9 @@ class PartWriter {
   void put(const BlobKey& key, Bytes sealed);
 
  private:
+  /// How much of the rest of a blob the next part takes: behind all keys, and between them.
+  [[nodiscard]] std::size_t size_to_fill(const EncodedKey& key, std::size_t rest) const;
+  [[nodiscard]] static std::size_t size_between(const EncodedKey& key, std::size_t rest);
   void put_part(const EncodedKey& key, Bytes part, bool append);
 
   const Transaction& transaction_;

@@ -24,6 +24,9 @@ constexpr std::uint64_t kPageCopies = std::uint64_t{256} << 10;
 
 std::uint64_t space_for(std::uint64_t bytes) { return bytes + bytes / 8 + kPageCopies; }
 
+/// Address space for the worst case: every blob copies a leaf page, splits it and ends in a page of its own.
+std::uint64_t map_for(std::uint64_t bytes, std::size_t blobs) { return space_for(bytes) + 3 * 4096 * blobs; }
+
 struct HeldBlob {
   BlobKey key;
   EncodedKey order;
@@ -117,7 +120,7 @@ class Attempt : public Writer {
   void write_held() {
     std::sort(held_.begin(), held_.end(), [](const HeldBlob& a, const HeldBlob& b) { return a.order < b.order; });
     require_free_bytes(store_->layout().folder, space_for(held_bytes_));
-    environment().reserve(2 * space_for(held_bytes_));
+    environment().reserve(map_for(held_bytes_, held_.size()));
     const auto transaction = environment().write();
     drop_pending_lists(*transaction, finished_lists_);
     std::vector<BlobKey> keys;
