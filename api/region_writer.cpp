@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "api/region_file.h"
 #include "ramcdb/error.h"
@@ -11,11 +12,19 @@ namespace {
 
 using mesh_file::FaceColor;
 
+/// Whether files with float32 coordinates, moved by `origin`, lead back to the same lattice points. In text such a
+/// number is read as a double up to half a float32 step away, so the steps to either side must lead back as well.
 bool floats_hold(const Lattice& lattice, const std::vector<LatticePoint>& points, const Point& origin) {
+  constexpr float kFar = std::numeric_limits<float>::infinity();
   return std::all_of(points.begin(), points.end(), [&](LatticePoint p) {
-    Point q = lattice.position(p);
-    for (int a = 0; a < 3; ++a) q[a] = static_cast<double>(static_cast<float>(q[a] - origin[a])) + origin[a];
-    return lattice.snap(q) == p;
+    const Point exact = lattice.position(p);
+    Point below, above;
+    for (int a = 0; a < 3; ++a) {
+      const auto nearest = static_cast<float>(exact[a] - origin[a]);
+      below[a] = static_cast<double>(std::nextafter(nearest, -kFar)) + origin[a];
+      above[a] = static_cast<double>(std::nextafter(nearest, kFar)) + origin[a];
+    }
+    return lattice.snap(below) == p && lattice.snap(above) == p;
   });
 }
 

@@ -13,8 +13,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "api/mesh_file/float_text.h"
-
 namespace ramcdb::mesh_file {
 namespace {
 
@@ -140,7 +138,6 @@ double TextScanner::parse_number(std::string_view text, std::string_view what) {
   if (error != std::errc() || end != text.data() + text.size())
     throw bad(fmt::format("{} is no number: '{}'", what, shown(text)));
   if (!std::isfinite(value)) throw bad(fmt::format("{} is not finite: '{}'", what, shown(text)));
-  if (!saw_doubles_) saw_doubles_ = !float_holds(text, value);
   return value;
 }
 

@@ -77,8 +77,6 @@ class TextScanner {
   [[nodiscard]] std::size_t offset() const { return at_; }
   /// Bytes not yet taken, those of the current line with them.
   [[nodiscard]] std::size_t left() const { return rest_.size() + file_.text().size() - at_; }
-  /// Whether any number so far is one that float32 does not hold to its last digit.
-  [[nodiscard]] bool saw_doubles() const { return saw_doubles_; }
   [[nodiscard]] Error bad(std::string_view what) const { return bad_line(file_, line_, what); }
   /// What a word starts with that ends the line: the rest is a comment. 0: there are no comments.
   char comment = 0;
@@ -94,7 +92,6 @@ class TextScanner {
   std::size_t line_ = 0;
   std::string_view rest_;
   std::string joined_;
-  bool saw_doubles_ = false;
   Progress progress_;
 };
 

@@ -6,27 +6,23 @@
 #include <cmath>
 
 #include "api/mesh_file/file_bytes.h"
-#include "api/mesh_file/float_text.h"
 
 namespace ramcdb::mesh_file {
 namespace {
 
 constexpr std::size_t kMostVertices = 0xfffffffe;
 
-/// What all formats have in common; rounds text to the scalar that it was found to have.
-void check(const FileBytes& file, MeshData& mesh) {
+/// What all formats have in common.
+void check(const FileBytes& file, const MeshData& mesh) {
   if (mesh.positions.empty())
     throw Error(Errc::invalid_argument, "the file holds no vertex", file.name(), "check that it is the right file");
   if (mesh.positions.size() > kMostVertices || mesh.face_count() > kMostVertices)
     throw Error(Errc::limit_exceeded, "the file holds more than 2^32 - 2 vertices or faces", file.name(), "split it");
-  const bool floats = mesh.scalar == Scalar::float32;
-  for (Point& p : mesh.positions) {
+  for (const Point& p : mesh.positions)
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
       throw Error(Errc::invalid_argument,
                   fmt::format("vertex {} has a coordinate that is not finite", &p - mesh.positions.data()), file.name(),
                   "repair the file; nothing was imported");
-    if (floats) p = {nearest_float(p.x), nearest_float(p.y), nearest_float(p.z)};
-  }
   const auto wrong = std::find_if(mesh.corners.begin(), mesh.corners.end(),
                                   [&](std::uint32_t v) { return v >= mesh.positions.size(); });
   if (wrong != mesh.corners.end())

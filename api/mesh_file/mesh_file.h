@@ -17,8 +17,8 @@ enum class Format { ply, obj, off, stl };
 /// From the extension, in any case. Throws invalid_argument listing the formats.
 [[nodiscard]] Format format_of(const std::filesystem::path& file);
 
-/// The number type of a file's coordinates. Text counts as float32 when float32 holds every coordinate of it to its
-/// last digit; they are rounded to it then, so that a float32 mesh is the same through text. Else it is float64.
+/// The number type of a file's coordinates. Text is float64: a decimal number is taken as the nearest double, never
+/// rounded to what some program may have printed it from.
 enum class Scalar { float32, float64 };
 
 struct MeshData {
@@ -64,7 +64,7 @@ struct MeshOutput {
 };
 
 /// Writes beside the file and renames into place, so that a failure leaves what was there. Text numbers are the
-/// shortest that read back the same, but for the first that tells float64 from float32. STL is binary; PLY is binary
+/// shortest that read back as the same number of the scalar. STL is binary; PLY is binary
 /// little-endian unless `ascii`. Throws disk_full, storage, and invalid_argument for coordinates that are not finite or
 /// too large for the scalar (STL: for float32), faces that name no vertex, ids or colours that are not one each; then
 /// nothing was touched.

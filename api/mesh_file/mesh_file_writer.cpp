@@ -12,7 +12,6 @@
 #include <limits>
 
 #include "api/mesh_file/file_bytes.h"
-#include "api/mesh_file/float_text.h"
 #include "api/mesh_file/mesh_file.h"
 
 namespace ramcdb::mesh_file {
@@ -52,12 +51,6 @@ class NewFile {
     const auto end = scalar == Scalar::float32
                          ? std::to_chars(digits.data(), digits.data() + digits.size(), static_cast<float>(value)).ptr
                          : std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-    text({digits.data(), static_cast<std::size_t>(end - digits.data())});
-  }
-  void all_digits(double value) {
-    std::array<char, 40> digits;
-    const auto end =
-        std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::scientific, 16).ptr;
     text({digits.data(), static_cast<std::size_t>(end - digits.data())});
   }
   void whole(std::uint64_t value) {
@@ -173,20 +166,12 @@ void write_ply_binary(NewFile& out, const MeshOutput& mesh) {
   }
 }
 
-/// Without types in the file, 0.1 may be either scalar. The first number that is no float32 is written with all its
-/// digits, by which the reader knows.
 void write_positions(NewFile& out, const MeshOutput& mesh, std::string_view before) {
-  bool told = mesh.scalar == Scalar::float32;
   for (const Point& p : mesh.positions) {
     out.text(before);
     for (int a = 0; a < 3; ++a) {
       if (a) out.text(" ");
-      if (told || nearest_float(p[a]) == p[a]) {
-        out.number(p[a], mesh.scalar);
-      } else {
-        out.all_digits(p[a]);
-        told = true;
-      }
+      out.number(p[a], mesh.scalar);
     }
     out.text("\n");
   }

@@ -32,7 +32,6 @@ class BodyReader {
         read_others(element);
     }
     if (!values_.at_end()) dropped_.add("bytes behind the last element");
-    if (values_.saw_doubles()) mesh_.scalar = Scalar::float64;
     dropped_.hand_over(mesh_);
   }
 
@@ -53,6 +52,7 @@ class BodyReader {
     const bool ids = element.has(Role::id_high) && element.has(Role::id_low);
     mesh_.positions.reserve(element.count);
     if (ids) mesh_.vertex_ids.reserve(element.count);
+    if (!Values::kBinary) mesh_.scalar = Scalar::float64;
     for (const Property& p : element.properties)
       if (p.role <= Role::z && (p.type == Type::float64 || p.type == Type::int32 || p.type == Type::uint32))
         mesh_.scalar = Scalar::float64;

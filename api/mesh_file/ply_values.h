@@ -32,7 +32,6 @@ class AsciiValues {
   [[nodiscard]] std::size_t left_for(Type) const { return scan_.left() / 2 + 1; }
   [[noreturn]] void refuse(std::string_view what) const { throw scan_.bad(what); }
   [[nodiscard]] bool at_end() { return scan_.word_anywhere().empty(); }
-  [[nodiscard]] bool saw_doubles() const { return scan_.saw_doubles(); }
 
  private:
   TextScanner scan_;
@@ -96,7 +95,6 @@ class BinaryValues {
   [[nodiscard]] std::size_t left_for(Type type) const { return (file_.text().size() - at_) / size_of(type); }
   [[noreturn]] void refuse(std::string_view what) const { throw bad_byte(file_, at_, what); }
   [[nodiscard]] bool at_end() const { return at_ == file_.text().size(); }
-  [[nodiscard]] bool saw_doubles() const { return false; }
 
   /// The bytes of one element whose values have `bytes` in all.
   const char* row(std::size_t bytes) { return take(bytes); }

@@ -92,7 +92,7 @@ void read_ascii(const FileBytes& file, MeshData& mesh, const Progress& progress)
     }
   }
   if (in_facet || in_solid) throw scan.bad("the file is cut off: no 'endsolid'");
-  if (scan.saw_doubles()) mesh.scalar = Scalar::float64;
+  mesh.scalar = Scalar::float64;
   if (!any) throw scan.bad("the file holds no facet");
 }
 

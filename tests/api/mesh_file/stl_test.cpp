@@ -37,7 +37,7 @@ TEST(Stl, FormsOfText) {
     EXPECT_EQ(mesh.positions, kCorners) << text;
     EXPECT_EQ(mesh.corners, (std::vector<std::uint32_t>{0, 1, 2}));
     EXPECT_TRUE(mesh.soup);
-    EXPECT_EQ(mesh.scalar, mesh_file::Scalar::float32);
+    EXPECT_EQ(mesh.scalar, mesh_file::Scalar::float64);
   }
 }
 
