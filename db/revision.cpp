@@ -27,15 +27,6 @@ std::string known_names(Catalogue& catalogue) {
   return fmt::format("there are versions up to {} and {}", newest.value, names);
 }
 
-VersionId named_version(Catalogue& catalogue, std::string_view name, std::string_view revision) {
-  if (name.empty() || name == "HEAD") name = "main";
-  if (const auto version = catalogue.ref(name)) return *version;
-  const auto number = number_in(name.starts_with('v') ? name.substr(1) : name);
-  if (number && catalogue.version(VersionId(*number))) return VersionId(*number);
-  if (name == "main") return VersionId();
-  throw Error(Errc::not_found, fmt::format("there is no revision '{}'", revision), {}, known_names(catalogue));
-}
-
 VersionId first_parent(Catalogue& catalogue, VersionId version, std::string_view revision) {
   const auto info = version ? catalogue.version(version) : std::nullopt;
   if (!info || info->parents.empty())
@@ -44,11 +35,28 @@ VersionId first_parent(Catalogue& catalogue, VersionId version, std::string_view
   return info->parents.front();
 }
 
+VersionId named_version(Catalogue& catalogue, std::string_view name, std::string_view revision, VersionId seq) {
+  if (name.empty() || name == "HEAD") name = "main";
+  if (auto version = catalogue.ref(name)) {
+    // Where blobs were lost a branch goes on with the newest version that is whole.
+    while (*version > seq) version = first_parent(catalogue, *version, revision);
+    return *version;
+  }
+  const auto number = number_in(name.starts_with('v') ? name.substr(1) : name);
+  if (number && catalogue.version(VersionId(*number))) {
+    if (VersionId(*number) <= seq) return VersionId(*number);
+    throw Error(Errc::corrupt, fmt::format("version {} has lost its blobs", *number), {},
+                "restore both files from the same backup");
+  }
+  if (name == "main") return VersionId();
+  throw Error(Errc::not_found, fmt::format("there is no revision '{}'", revision), {}, known_names(catalogue));
+}
+
 }  // namespace
 
 VersionId resolve_revision(Catalogue& catalogue, std::string_view revision, VersionId seq) {
   const std::size_t tilde = std::min(revision.find('~'), revision.size());
-  VersionId version = named_version(catalogue, revision.substr(0, tilde), revision);
+  VersionId version = named_version(catalogue, revision.substr(0, tilde), revision, seq);
   for (std::string_view rest = revision.substr(tilde); !rest.empty();) {
     const std::size_t next = std::min(rest.find('~', 1), rest.size());
     const std::string_view count = rest.substr(1, next - 1);
@@ -59,7 +67,6 @@ VersionId resolve_revision(Catalogue& catalogue, std::string_view revision, Vers
     for (std::uint32_t i = 0; i < *steps; ++i) version = first_parent(catalogue, version, revision);
     rest.remove_prefix(next);
   }
-  while (version > seq) version = first_parent(catalogue, version, revision);
   return version;
 }
 

@@ -89,7 +89,8 @@ class Store {
 
   /// Resolves `17`, `v17`, a branch, a tag, `HEAD` (tip of main), each with any number of `~N` behind it.
   /// An empty text is HEAD. Version 0 (none) only for the tip of a branch on which nothing was published yet.
-  /// Throws not_found, naming what exists.
+  /// Throws not_found, naming what exists. Where blobs are lost (data.mdb older than the catalogue) a branch goes on
+  /// with its newest whole version; a lost version that is asked for by number is corrupt.
   [[nodiscard]] virtual VersionId resolve(std::string_view revision) = 0;
   [[nodiscard]] virtual VersionInfo version(VersionId id) = 0;
   [[nodiscard]] virtual std::vector<MeshRoot> roots(VersionId id) = 0;  ///< by name; empty for version 0
