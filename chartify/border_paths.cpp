@@ -58,7 +58,7 @@ class Tracer {
     HalfEdge g = first;
     do {
       if (is_border(g)) {
-        ++borders;
+        if (++borders > 2) return kNoTwin;
         if (chart_of_face_[face_of(g)] == chart_of_face_[face_of(h)]) found = g;
       }
       g = next_in_face(twins_[g]);

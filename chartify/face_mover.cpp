@@ -3,6 +3,13 @@
 #include <algorithm>
 
 namespace ramcdb::chartify {
+namespace {
+
+// Faces looked at around a vertex, so that the hub of a million spokes does not cost their square. A larger fan is
+// taken for one that forbids the move.
+constexpr int kMostAround = 1000;
+
+}  // namespace
 
 std::array<std::uint32_t, 3> FaceMover::charts_around(std::uint32_t face) const {
   std::array<std::uint32_t, 3> around{};
@@ -68,20 +75,20 @@ bool FaceMover::keeps_shape(std::uint32_t face, std::uint32_t to) const {
 }
 
 bool FaceMover::others_all_in(HalfEdge h, std::uint32_t c) const {
+  int left = kMostAround;
   for (HalfEdge g = twins_[previous_in_face(h)]; g != h; g = twins_[previous_in_face(g)])
-    if (g == kNoTwin || chart(face_of(g)) != c) return false;
+    if (g == kNoTwin || chart(face_of(g)) != c || --left == 0) return false;
   return true;
 }
 
 bool FaceMover::others_touch(HalfEdge h, std::uint32_t c) const {
-  for (HalfEdge g = twins_[previous_in_face(h)]; g != h; g = twins_[previous_in_face(g)]) {
-    if (g == kNoTwin) {  // an open fan: the rest lies the other way round
-      for (HalfEdge back = twins_[h]; back != kNoTwin; back = twins_[next_in_face(back)])
-        if (chart(face_of(back)) == c) return true;
-      return false;
-    }
-    if (chart(face_of(g)) == c) return true;
-  }
+  int left = kMostAround;
+  HalfEdge g = twins_[previous_in_face(h)];
+  for (; g != kNoTwin && g != h; g = twins_[previous_in_face(g)])
+    if (chart(face_of(g)) == c || --left == 0) return true;
+  if (g == h) return false;
+  for (g = twins_[h]; g != kNoTwin; g = twins_[next_in_face(g)])  // an open fan: the rest lies the other way round
+    if (chart(face_of(g)) == c || --left == 0) return true;
   return false;
 }
 

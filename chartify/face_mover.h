@@ -67,9 +67,10 @@ class FaceMover {
  private:
   [[nodiscard]] std::array<std::uint32_t, 3> charts_around(std::uint32_t face) const;
   [[nodiscard]] int gain(const std::array<std::uint32_t, 3>& around, std::uint32_t from, std::uint32_t to) const;
-  /// Whether all other faces around the start of a half-edge form one fan that is wholly in a chart.
+  /// Whether all other faces around the start of a half-edge form one fan that is wholly in a chart,
+  /// and a fan that is not very large.
   [[nodiscard]] bool others_all_in(HalfEdge h, std::uint32_t c) const;
-  /// Whether any other face of the fan around the start of a half-edge is in a chart.
+  /// Whether any other face of the fan around the start of a half-edge is in a chart, or the fan is very large.
   [[nodiscard]] bool others_touch(HalfEdge h, std::uint32_t c) const;
 
   const std::vector<HalfEdge>& twins_;

@@ -45,6 +45,7 @@ class Straightener {
  private:
   struct VertexState {
     std::uint32_t band = 0;     ///< number of the border in whose band the vertex was last
+    std::uint32_t outside = 0;  ///< number of the border whose charts the vertex was last found not to be inside of
     std::uint32_t reached = 0;  ///< number of the border for which `cost` and `arriving` hold
     std::uint32_t cost = 0;
     HalfEdge arriving = kNoTwin;
@@ -66,7 +67,7 @@ class Straightener {
     right_ = chart_left(twins_[path.front()]);
     begin_ = start_of(path.front());
     end_ = end_of(path.back());
-    if (begin_ == end_) return;
+    if (begin_ == end_ || left_ == right_) return;  // straightening another border may have merged the two sides
     mark_band(path);
     std::uint32_t cost = 0;
     for (const HalfEdge h : path) cost += cost_of(h);
@@ -86,9 +87,14 @@ class Straightener {
       for (const std::uint32_t v : ring)
         for_each_leaving(v, [&](HalfEdge h) {
           const std::uint32_t u = end_of(h);
-          if (vertex_[u].band == number_ || !is_inside(u)) return;
-          vertex_[u].band = number_;
-          next.push_back(u);
+          VertexState& state = vertex_[u];
+          if (state.band == number_ || state.outside == number_) return;
+          if (is_inside(u)) {
+            state.band = number_;
+            next.push_back(u);
+          } else {
+            state.outside = number_;
+          }
         });
     }
   }
@@ -108,9 +114,10 @@ class Straightener {
     const HalfEdge first = fans_.leaving(v);
     if (first == kNoTwin) return false;
     const std::uint32_t c = chart_left(first);
-    bool inside = c == left_ || c == right_;
-    for_each_leaving(v, [&](HalfEdge h) { inside = inside && chart_left(h) == c; });
-    return inside;
+    if (c != left_ && c != right_) return false;
+    for (HalfEdge h = twins_[previous_in_face(first)]; h != first; h = twins_[previous_in_face(h)])
+      if (chart_left(h) != c) return false;
+    return true;
   }
 
   /// The half-edges that leave the corner at the start of `h` between the two charts' other borders.

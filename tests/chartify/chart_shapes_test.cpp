@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "chartify/hilbert_cells.h"
 #include "tests/chartify/chart_checks.h"
@@ -14,6 +15,27 @@ struct Case {
   const char* name;
   TestMesh (*make)();
 };
+
+/// Three rings around a hub with very many spokes.
+TestMesh hub() {
+  constexpr std::uint32_t kSpokes = 3000, kRings = 3;
+  TestMesh mesh;
+  mesh.positions.push_back({0, 0, 1});
+  for (std::uint32_t ring = 1; ring <= kRings; ++ring)
+    for (std::uint32_t i = 0; i < kSpokes; ++i) {
+      const double angle = 2 * 3.14159265358979 * i / kSpokes;
+      mesh.positions.push_back({ring * std::cos(angle), ring * std::sin(angle), 0});
+    }
+  const auto vertex = [](std::uint32_t ring, std::uint32_t i) { return 1 + ring * kSpokes + i % kSpokes; };
+  for (std::uint32_t i = 0; i < kSpokes; ++i) {
+    mesh.faces.push_back({0, vertex(0, i), vertex(0, i + 1)});
+    for (std::uint32_t ring = 0; ring + 1 < kRings; ++ring) {
+      mesh.faces.push_back({vertex(ring, i), vertex(ring + 1, i), vertex(ring + 1, i + 1)});
+      mesh.faces.push_back({vertex(ring, i), vertex(ring + 1, i + 1), vertex(ring, i + 1)});
+    }
+  }
+  return mesh;
+}
 
 std::string name_of(const testing::TestParamInfo<std::tuple<Case, Method>>& info) {
   return std::string(std::get<0>(info.param).name) +
@@ -40,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(
                                      Case{"Torus", [] { return ramcdb::test::torus(5000); }},
                                      Case{"Genus3", [] { return ramcdb::test::genus3(5000); }},
                                      Case{"Terrain", [] { return ramcdb::test::terrain(50, 50); }},
-                                     Case{"Strip", [] { return ramcdb::test::terrain(1, 3000); }},
+                                     Case{"Strip", [] { return ramcdb::test::terrain(1, 3000); }}, Case{"Hub", hub},
                                      Case{"Scan", [] { return ramcdb::test::scan(6000); }},
                                      Case{"Boxes", [] { return ramcdb::test::boxes(300); }},
                                      Case{"SeveralComponents", [] { return ramcdb::test::several_components(); }},
