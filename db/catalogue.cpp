@@ -92,6 +92,12 @@ VersionId Catalogue::newest() {
   return VersionId(static_cast<std::uint32_t>(database_.integer("SELECT coalesce(max(id), 0) FROM version")));
 }
 
+VersionId Catalogue::newest_of(std::string_view branch) {
+  Statement s = database_.prepare("SELECT coalesce(max(id), 0) FROM version WHERE branch = ?");
+  s.bind(1, branch);
+  return VersionId(s.step() ? static_cast<std::uint32_t>(s.integer(0)) : 0);
+}
+
 std::optional<VersionInfo> Catalogue::version(VersionId id) {
   Statement s = database_.prepare(fmt::format("SELECT {} FROM version WHERE id = ?", kInfoColumns));
   s.bind(1, std::int64_t{id.value});

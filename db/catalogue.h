@@ -33,6 +33,7 @@ class Catalogue {
 
   [[nodiscard]] std::string repository_id();
   [[nodiscard]] VersionId newest();  ///< the largest number of a published version
+  [[nodiscard]] VersionId newest_of(std::string_view branch);
   [[nodiscard]] std::optional<VersionInfo> version(VersionId id);
   [[nodiscard]] std::optional<CommitRecord> record(VersionId id);
   [[nodiscard]] std::vector<MeshRoot> roots(VersionId id);

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <set>
 
 #include "db/blob_parts.h"
@@ -15,13 +14,26 @@ namespace {
 
 using Found = std::function<void(const Store::Problem&)>;
 
+void check_blob(Cursor& cursor, const BlobKey& key, const Found& found) {
+  try {
+    if (!read_blob(cursor, key)) found({"key", key, describe(key) + " is there, and its key does not lead to it"});
+  } catch (const Error& e) {
+    found({"checksum", key, e.what()});
+  }
+}
+
 /// Looks at every blob: its key, its parts, its checksum. Returns their number.
 std::uint64_t check_blobs(const Transaction& transaction, const Found& found) {
   Cursor keys(transaction), blobs(transaction);
   std::uint64_t count = 0;
   std::optional<DecodedKey> before;
+  Bytes name_before;
   for (bool more = keys.first(); more; more = keys.next()) {
-    const auto now = decode_key(keys.key());
+    const Bytes name = keys.key();
+    const auto now = decode_key(name);
+    if (!std::lexicographical_compare(name_before.begin(), name_before.end(), name.begin(), name.end()))
+      found({"key", std::nullopt, "the keys of the blob file are out of order: some blobs cannot be found"});
+    name_before = name;
     if (!now) {
       found({"key", std::nullopt, "the blob file holds a key of another form"});
     } else if (now->part != 0) {
@@ -29,11 +41,7 @@ std::uint64_t check_blobs(const Transaction& transaction, const Found& found) {
         found({"missing", now->key, fmt::format("part {} of {} has none before it", now->part, describe(now->key))});
     } else {
       ++count;
-      try {
-        (void)read_blob(blobs, now->key);
-      } catch (const Error& e) {
-        found({"checksum", now->key, e.what()});
-      }
+      check_blob(blobs, now->key, found);
     }
     before = now;
   }
@@ -55,6 +63,15 @@ void check_record(const Transaction& transaction, Catalogue& catalogue, VersionI
   } catch (const Error& e) {
     found({"catalogue", record_key(version), e.what()});
   }
+}
+
+/// A branch is at the newest version that was published on it.
+void check_branches(Catalogue& catalogue, const Found& found) {
+  for (const Ref& ref : catalogue.refs())
+    if (const VersionId newest = catalogue.newest_of(ref.name); !ref.is_tag && newest != ref.version)
+      found({"catalogue", std::nullopt,
+             fmt::format("branch {} is at version {}, its newest version is {}", ref.name, ref.version.value,
+                         newest.value)});
 }
 
 /// Blobs that no published version wrote. While a writer is at work its own are such, and no problem.
@@ -87,6 +104,7 @@ std::uint64_t check_halves(Environment& environment, Catalogue& catalogue, std::
     else if (version > VersionId(read_state(*environment.read()).seq))
       found({"missing", std::nullopt, fmt::format("version {} has lost its blobs", version.value)});
   }
+  check_branches(catalogue, found);
   const std::uint64_t count = check_blobs(*transaction, found);
   check_leftovers(*transaction, versions.empty() ? VersionId() : *versions.rbegin(), versions, found);
   return count;

@@ -58,16 +58,18 @@ class TempStore {
   TempFolder temp_;
 };
 
-/// Bytes that nobody can compress, a function of the seed alone (splitmix64).
+/// One step of splitmix64.
+inline std::uint64_t mix(std::uint64_t z) {
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
+  return z ^ (z >> 31);
+}
+
+/// Bytes that nobody can compress, a function of the seed alone; those of two seeds have nothing in common.
 inline Buffer random_bytes(std::uint64_t seed, std::size_t size) {
   Buffer bytes(size);
-  std::uint64_t state = seed * 0x9E3779B97F4A7C15U + 1;
-  for (std::uint8_t& b : bytes) {
-    std::uint64_t z = (state += 0x9E3779B97F4A7C15U);
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
-    b = static_cast<std::uint8_t>(z >> 56);
-  }
+  std::uint64_t state = mix(seed + 0x9E3779B97F4A7C15U);
+  for (std::uint8_t& b : bytes) b = static_cast<std::uint8_t>(mix(state += 0x9E3779B97F4A7C15U) >> 56);
   return bytes;
 }
 
