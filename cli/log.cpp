@@ -46,9 +46,7 @@ void setup_log(CLI::App& app, Run& run) {
   const auto options = std::make_shared<LogOptions>();
   CLI::App& verb = *app.add_subcommand("log", "List the versions, newest first");
   add_repository(verb, options->folder);
-  verb.add_option("-n,--limit", options->limit, "At most N versions")
-      ->type_name("N")
-      ->check(CLI::NonNegativeNumber);
+  verb.add_option("-n,--limit", options->limit, "At most N versions")->type_name("N")->check(CLI::NonNegativeNumber);
   verb.add_option("--mesh", options->which.mesh, "Only versions that changed this mesh")->type_name("NAME");
   add_at(verb, options->which);
   add_output_mode(verb, options->mode);
