@@ -3,8 +3,6 @@
 #include "chartify/partition.h"
 
 namespace ramcdb::chartify {
-namespace {}  // namespace
-
 CutSurface::CutSurface(const IndexedMesh& mesh, const std::vector<std::uint32_t>& chart_of_face)
     : mesh_(mesh), edges_(group_half_edges(mesh)), mate_(find_twins(mesh, edges_)) {
   for (HalfEdge h = 0; h < mate_.size(); ++h)

@@ -91,7 +91,6 @@ class Builder {
     const std::vector<std::vector<std::uint32_t>> faces = faces_by_chart();
     for (std::uint32_t c = 0; c < charts_.chart_count; ++c) build_chart(c, faces[c]);
     add_isolated_vertices();
-    for (NetWire& wire : net_.wires) std::sort(wire.charts.begin(), wire.charts.end());
     return std::move(net_);
   }
 

@@ -30,9 +30,9 @@ struct NetChart {
 /// The wire-net of a chartified mesh (paper, section 3): every chart with its loops, every wire once, every corner.
 ///
 /// An edge is cut, and lies on a wire, unless exactly two faces of the same chart pass it in opposite directions.
-/// A vertex whose faces do not form one fan is one corner, however many fans there are; a closed fan at such a vertex
-/// is slit open along two edges, and a loop of two vertices is lengthened by one edge, so that all its local copies are
-/// known through wires. A corner ends wires: any vertex where other than two cut edges meet or the charts change. A
+/// Where the faces around a vertex form several fans, closed ones are slit open along an edge, and a loop of two
+/// vertices is lengthened by one edge, so that all local copies of a vertex are known through wires. A corner ends
+/// wires: any vertex where other than two cut edges meet, or where a loop does not go on from one to the other. A
 /// closed wire without a corner gets one at its smallest position.
 struct WireNet {
   std::vector<std::uint32_t> corners;  ///< mesh vertex of each corner

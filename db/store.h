@@ -102,7 +102,7 @@ class Store {
   /// The version that this attempt published, if it did: the answer to a commit whose answer got lost.
   [[nodiscard]] virtual std::optional<VersionId> published_by(std::string_view attempt) = 0;
 
-  /// Keeps a version from being pruned until the pin is destroyed, its time is over or its process is gone.
+  /// Keeps a version from being pruned until the pin is destroyed or its process is gone.
   [[nodiscard]] virtual std::unique_ptr<Pin> pin(VersionId id, std::string_view holder) = 0;
 
   /// A consistent view of the blobs for a short time: some charts, not an export (renew it per batch). Not thread-safe;

@@ -316,6 +316,7 @@ TestMesh shuffled(const TestMesh& mesh, unsigned seed) {
 }
 
 std::vector<LatticePoint> snap_to_bits(const TestMesh& mesh, unsigned bits) {
+  if (mesh.positions.empty()) return {};
   Point lo = mesh.positions.front(), hi = lo;
   for (const Point& p : mesh.positions)
     for (int a = 0; a < 3; ++a) {
