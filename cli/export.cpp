@@ -22,7 +22,7 @@ struct ExportOptions {
   OutputMode mode;
 };
 
-std::string report_text(const CheckoutReport& report, const std::string& file) {
+std::string export_text(const CheckoutReport& report, const std::string& file) {
   return file + ": " + version_text(report.revision) + ", " + counted(report.vertices, "vertex", "vertices") + ", " +
          counted(report.faces, "face") + "; read " + counted(report.bytes_read, "byte") + " in " +
          duration(report.seconds) + "\n";
@@ -42,7 +42,7 @@ int run_export(const ExportOptions& options) {
   if (options.mode.json)
     say(checkout_json(report));
   else if (!options.mode.quiet)
-    say(report_text(report, options.output.file));
+    say(export_text(report, options.output.file));
   return kDone;
 }
 

@@ -49,7 +49,7 @@ std::string place_text(const MeshInfo& info) {
          ")\nprofile      " + one_line(info.profile) + "\n";
 }
 
-std::string size_text(const MeshInfo& info) {
+std::string table_of_sizes(const MeshInfo& info) {
   Table table({{"kind", Table::Align::left}, {"bytes"}, {"bits/vertex"}});
   const auto row = [&](const char* kind, std::uint64_t bytes) {
     table.add({kind, grouped(bytes), fixed(bits_per_vertex(bytes, info.vertices), 3)});
@@ -69,7 +69,7 @@ std::string size_text(const MeshInfo& info) {
 int run_info(const InfoOptions& options) {
   const Repository repository = Repository::open(options.folder);
   const MeshInfo info = repository.snapshot(options.which.mesh, options.which.at).info();
-  say(options.mode.json ? info_json(info) : shape_text(info) + "\n" + place_text(info) + "\n" + size_text(info));
+  say(options.mode.json ? info_json(info) : shape_text(info) + "\n" + place_text(info) + "\n" + table_of_sizes(info));
   return kDone;
 }
 
