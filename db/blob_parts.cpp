@@ -1,6 +1,7 @@
 #include "db/blob_parts.h"
 
 #define XXH_INLINE_ALL
+#include <lmdb.h>
 #include <xxhash.h>
 
 #include <algorithm>

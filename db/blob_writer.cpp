@@ -52,6 +52,7 @@ class Attempt : public Writer {
     // Once a row was tried only the catalogue, read anew, knows how that ended: the next writer's recovery asks it.
     if (!flushed_ || row_tried_) return;
     try {
+      environment().reserve_for_deleting();
       const auto transaction = environment().write();
       take_back(*transaction, version());
       transaction->commit();

@@ -1,11 +1,13 @@
 #include "db/environment.h"
 
 #include <fmt/format.h>
+#include <lmdb.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <utility>
 
 #include "db/file_system.h"
@@ -18,6 +20,7 @@ constexpr std::uint64_t kUsualMapSize = std::uint64_t{1} << 40;  // of address s
 constexpr std::uint64_t kSmallestMapSize = std::uint64_t{64} << 20;
 constexpr std::uint64_t kGrain = std::uint64_t{1} << 20;
 constexpr unsigned kMaxReaders = 1024;
+constexpr std::chrono::seconds kMapPatience{20};
 constexpr std::uint64_t kLowDisk = std::uint64_t{1} << 20;
 
 std::uint64_t& first_map_size() {
@@ -87,7 +90,7 @@ Transaction::~Transaction() {
   if (txn_ && ::getpid() == environment_.process_) mdb_txn_abort(txn_);
 }
 
-MDB_dbi Transaction::table() const { return environment_.table_; }
+unsigned Transaction::table() const { return environment_.table_; }
 
 const std::filesystem::path& Transaction::file() const { return environment_.file_; }
 
@@ -108,16 +111,25 @@ Cursor::Cursor(const Transaction& transaction) : file_(transaction.file()) {
   check_lmdb(mdb_cursor_open(transaction.get(), transaction.table(), &cursor_), file_);
 }
 
+Cursor::~Cursor() { mdb_cursor_close(cursor_); }
+
 bool Cursor::seek(const EncodedKey& key) {
-  key_ = {key.bytes().size(),
-          const_cast<std::uint8_t*>(key.bytes().data())};  // LMDB reads it and points it into the map
+  key_ = key.bytes();
   return move(MDB_SET_RANGE);
 }
 
-bool Cursor::move(MDB_cursor_op op) {
-  const int rc = mdb_cursor_get(cursor_, &key_, &value_, op);
+bool Cursor::next() { return move(MDB_NEXT); }
+
+bool Cursor::first() { return move(MDB_FIRST); }
+
+bool Cursor::move(int operation) {
+  MDB_val key{key_.size(), const_cast<std::uint8_t*>(key_.data())};  // LMDB reads it and points it into the map
+  MDB_val value{};
+  const int rc = mdb_cursor_get(cursor_, &key, &value, static_cast<MDB_cursor_op>(operation));
   if (rc == MDB_NOTFOUND) return false;
   check_lmdb(rc, file_);
+  key_ = {static_cast<const std::uint8_t*>(key.mv_data), key.mv_size};
+  value_ = {static_cast<const std::uint8_t*>(value.mv_data), value.mv_size};
   return true;
 }
 
@@ -180,6 +192,14 @@ std::unique_ptr<Transaction> Environment::read() { return std::unique_ptr<Transa
 
 std::unique_ptr<Transaction> Environment::write() { return std::unique_ptr<Transaction>(new Transaction(*this, true)); }
 
+void Environment::reserve_for_deleting() {
+  MDB_envinfo info;
+  MDB_stat stat;
+  check_lmdb(mdb_env_info(env_, &info), file_);
+  check_lmdb(mdb_env_stat(env_, &stat), file_);
+  reserve((info.me_last_pgno + 1) * static_cast<std::uint64_t>(stat.ms_psize) + kGrain);
+}
+
 void Environment::reserve(std::uint64_t bytes) {
   require_own_process();
   MDB_envinfo info;
@@ -188,8 +208,7 @@ void Environment::reserve(std::uint64_t bytes) {
   check_lmdb(mdb_env_stat(env_, &stat), file_);
   const std::uint64_t need = (info.me_last_pgno + 1) * static_cast<std::uint64_t>(stat.ms_psize) + bytes;
   if (need <= info.me_mapsize) return;
-  const std::unique_lock<std::shared_mutex> alone(map_gate_);
-  check_lmdb(mdb_env_set_mapsize(env_, (2 * need + kGrain - 1) / kGrain * kGrain), file_);
+  set_map_size((2 * need + kGrain - 1) / kGrain * kGrain);
 }
 
 void Environment::sweep_readers() {
@@ -197,9 +216,14 @@ void Environment::sweep_readers() {
   check_lmdb(mdb_reader_check(env_, &dead), file_);
 }
 
-void Environment::adopt_map_size() {
-  const std::unique_lock<std::shared_mutex> alone(map_gate_);
-  check_lmdb(mdb_env_set_mapsize(env_, 0), file_);
+void Environment::adopt_map_size() { set_map_size(0); }
+
+void Environment::set_map_size(std::uint64_t bytes) {
+  const std::unique_lock<std::shared_timed_mutex> alone(map_gate_, kMapPatience);
+  if (!alone)
+    throw Error(Errc::storage, "the memory map must grow, and readers of this process hold it", file_.string(),
+                "let go of them and try again; with more address space this does not happen");
+  check_lmdb(mdb_env_set_mapsize(env_, bytes), file_);
 }
 
 }  // namespace ramcdb::db

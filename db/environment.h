@@ -1,6 +1,5 @@
 #pragma once
 
-#include <lmdb.h>
 #include <sys/types.h>
 
 #include <cstdint>
@@ -11,6 +10,10 @@
 
 #include "db/blob_key.h"
 #include "ramcdb/bytes.h"
+
+struct MDB_env;
+struct MDB_txn;
+struct MDB_cursor;
 
 namespace ramcdb::db {
 
@@ -26,7 +29,7 @@ class Transaction {
   ~Transaction();
 
   [[nodiscard]] MDB_txn* get() const { return txn_; }
-  [[nodiscard]] MDB_dbi table() const;
+  [[nodiscard]] unsigned table() const;  ///< LMDB's handle of the one table
   [[nodiscard]] const std::filesystem::path& file() const;
 
   /// Of a write transaction: makes it durable. Throws, and leaves nothing, when it cannot be.
@@ -41,7 +44,7 @@ class Transaction {
 
   Environment& environment_;
   bool write_;
-  std::shared_lock<std::shared_mutex> map_;  ///< while held the map stays where it is
+  std::shared_lock<std::shared_timed_mutex> map_;  ///< while held the map stays where it is
   MDB_txn* txn_ = nullptr;
 };
 
@@ -50,22 +53,21 @@ class Cursor {
  public:
   explicit Cursor(const Transaction& transaction);
   Cursor(Cursor&&) = delete;
-  ~Cursor() { mdb_cursor_close(cursor_); }
+  ~Cursor();
 
   /// Moves to the first key >= `key`. Returns whether there is one.
   [[nodiscard]] bool seek(const EncodedKey& key);
-  [[nodiscard]] bool next() { return move(MDB_NEXT); }
-  [[nodiscard]] bool first() { return move(MDB_FIRST); }
-  [[nodiscard]] bool last() { return move(MDB_LAST); }
-  [[nodiscard]] Bytes key() const { return {static_cast<const std::uint8_t*>(key_.mv_data), key_.mv_size}; }
-  [[nodiscard]] Bytes value() const { return {static_cast<const std::uint8_t*>(value_.mv_data), value_.mv_size}; }
+  [[nodiscard]] bool next();
+  [[nodiscard]] bool first();
+  [[nodiscard]] Bytes key() const { return key_; }
+  [[nodiscard]] Bytes value() const { return value_; }
 
  private:
-  [[nodiscard]] bool move(MDB_cursor_op op);
+  [[nodiscard]] bool move(int operation);
 
   const std::filesystem::path& file_;
   MDB_cursor* cursor_ = nullptr;
-  MDB_val key_{}, value_{};
+  Bytes key_, value_;  ///< in the map
 };
 
 /// The LMDB half of a repository: one file, one environment per process.
@@ -82,8 +84,10 @@ class Environment {
   [[nodiscard]] std::unique_ptr<Transaction> write();
 
   /// Makes room in the memory map for that many more bytes. REQUIRES: the writer lock, no transaction of this thread.
-  /// Waits for the read transactions of other threads where the map must grow.
+  /// Waits for the read transactions of other threads where the map must grow; throws storage when they take too long.
   void reserve(std::uint64_t bytes);
+  /// The same for a transaction that only deletes: it copies at most every page there is.
+  void reserve_for_deleting();
 
   /// Frees the reader slots of processes that are gone.
   void sweep_readers();
@@ -99,13 +103,16 @@ class Environment {
   void require_whole_file() const;
   /// Another process grew the map: follow.
   void adopt_map_size();
+  /// Moves the map when no transaction of this process is open. Waits for them, but not for ever: one of them may be
+  /// this thread's own.
+  void set_map_size(std::uint64_t bytes);
 
   std::filesystem::path file_;
   Mode mode_;
   pid_t process_;
   MDB_env* env_ = nullptr;
-  MDB_dbi table_ = 0;
-  std::shared_mutex map_gate_;  ///< shared by transactions, exclusive while the map moves
+  unsigned table_ = 0;
+  std::shared_timed_mutex map_gate_;  ///< shared by transactions, exclusive while the map moves
 };
 
 /// For tests, before a repository is opened: the size that memory maps begin with. 0 for the usual one.

@@ -89,6 +89,7 @@ std::vector<VersionId> recover(Environment& environment, Catalogue& catalogue) {
   }
   if (!unpublished.empty()) {
     fail_point("recovery.begin");
+    environment.reserve_for_deleting();
     const auto transaction = environment.write();
     for (const VersionId version : unpublished) take_back(*transaction, version);
     transaction->commit();

@@ -35,16 +35,17 @@ VersionId first_parent(Catalogue& catalogue, VersionId version, std::string_view
   return info->parents.front();
 }
 
-VersionId named_version(Catalogue& catalogue, std::string_view name, std::string_view revision, VersionId seq) {
+VersionId named_version(Catalogue& catalogue, std::string_view name, std::string_view revision,
+                        const std::function<bool(VersionId)>& has_blobs) {
   if (name.empty() || name == "HEAD") name = "main";
   if (auto version = catalogue.ref(name)) {
     // Where blobs were lost a branch goes on with the newest version that is whole.
-    while (*version > seq) version = first_parent(catalogue, *version, revision);
+    while (!has_blobs(*version)) version = first_parent(catalogue, *version, revision);
     return *version;
   }
   const auto number = number_in(name.starts_with('v') ? name.substr(1) : name);
   if (number && catalogue.version(VersionId(*number))) {
-    if (VersionId(*number) <= seq) return VersionId(*number);
+    if (has_blobs(VersionId(*number))) return VersionId(*number);
     throw Error(Errc::corrupt, fmt::format("version {} has lost its blobs", *number), {},
                 "restore both files from the same backup");
   }
@@ -54,9 +55,10 @@ VersionId named_version(Catalogue& catalogue, std::string_view name, std::string
 
 }  // namespace
 
-VersionId resolve_revision(Catalogue& catalogue, std::string_view revision, VersionId seq) {
+VersionId resolve_revision(Catalogue& catalogue, std::string_view revision,
+                           const std::function<bool(VersionId)>& has_blobs) {
   const std::size_t tilde = std::min(revision.find('~'), revision.size());
-  VersionId version = named_version(catalogue, revision.substr(0, tilde), revision, seq);
+  VersionId version = named_version(catalogue, revision.substr(0, tilde), revision, has_blobs);
   for (std::string_view rest = revision.substr(tilde); !rest.empty();) {
     const std::size_t next = std::min(rest.find('~', 1), rest.size());
     const std::string_view count = rest.substr(1, next - 1);

@@ -195,12 +195,10 @@ StoreImpl::StoreImpl(const Layout& layout, Environment::Mode mode)
 }
 
 VersionId StoreImpl::resolve(std::string_view revision) {
-  // LMDB first. The catalogue may then tell of a version that was published in between: one more look finds its blobs,
-  // unless they are lost. Then reading goes on with what both halves hold.
-  const auto seq = [&] { return VersionId(read_state(*environment_.read()).seq); };
-  VersionId last = seq();
-  if (with_catalogue([](Catalogue& c) { return c.newest(); }) > last) last = seq();
-  return with_catalogue([&](Catalogue& c) { return resolve_revision(c, revision, last); });
+  // A version's blobs are durable before its row is: a transaction that begins after the row was read sees them, unless
+  // they are lost. Then reading goes on with what both halves hold.
+  const auto has_blobs = [&](VersionId v) { return v <= VersionId(read_state(*environment_.read()).seq); };
+  return with_catalogue([&](Catalogue& c) { return resolve_revision(c, revision, has_blobs); });
 }
 
 VersionInfo StoreImpl::version(VersionId id) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -72,7 +73,8 @@ class StoreImpl : public Store, public std::enable_shared_from_this<StoreImpl> {
 std::uint64_t check_halves(Environment& environment, Catalogue& catalogue, std::string_view repository_id,
                            const std::function<void(const Store::Problem&)>& found);
 
-/// Finds a version by what users write (Store::resolve). `seq` is the last version whose blobs are there.
-[[nodiscard]] VersionId resolve_revision(Catalogue& catalogue, std::string_view revision, VersionId seq);
+/// Finds a version by what users write (Store::resolve). `has_blobs` is asked about rows that were read before.
+[[nodiscard]] VersionId resolve_revision(Catalogue& catalogue, std::string_view revision,
+                                         const std::function<bool(VersionId)>& has_blobs);
 
 }  // namespace ramcdb::db

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -22,7 +20,7 @@ class AsciiValues {
   double number(Type) { return scan_.number_anywhere("a value"); }
   std::uint64_t whole(Type) {
     const std::int64_t value = scan_.integer_anywhere("a value");
-    if (value < 0) refuse(fmt::format("{} is negative", value));
+    if (value < 0) refuse(std::to_string(value) + " is negative");
     return static_cast<std::uint64_t>(value);
   }
   void skip(Type, std::uint64_t count) {
@@ -125,7 +123,7 @@ class BinaryValues {
 
  private:
   std::uint64_t not_negative(std::int64_t value) const {
-    if (value < 0) refuse(fmt::format("{} is negative", value));
+    if (value < 0) refuse(std::to_string(value) + " is negative");
     return static_cast<std::uint64_t>(value);
   }
   const char* take(std::size_t bytes) {

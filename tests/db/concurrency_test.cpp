@@ -196,8 +196,8 @@ TEST_F(SmallMap, GrowsUnderTwoProcessesThatTakeTurns) {
     const auto store = temp.open(Access::read);
     for (std::size_t seen = 0; seen < 16;) {
       seen = store->all_versions().size();
-      const auto blobs = store->reader();
       if (const VersionId tip = store->resolve("HEAD")) (void)store->version(tip);
+      const auto blobs = store->reader();
     }
   });
   EXPECT_EQ(one.wait(), 0);
