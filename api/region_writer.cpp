@@ -16,6 +16,13 @@ using mesh_file::FaceColor;
 /// number is read as a double up to half a float32 step away, so the steps to either side must lead back as well.
 bool floats_hold(const Lattice& lattice, const std::vector<LatticePoint>& points, const Point& origin) {
   constexpr float kFar = std::numeric_limits<float>::infinity();
+  const auto leads_back = [&](const Point& q, LatticePoint p) {
+    try {
+      return lattice.snap(q) == p;
+    } catch (const Error&) {  // beyond the lattice
+      return false;
+    }
+  };
   return std::all_of(points.begin(), points.end(), [&](LatticePoint p) {
     const Point exact = lattice.position(p);
     Point below, above;
@@ -24,7 +31,7 @@ bool floats_hold(const Lattice& lattice, const std::vector<LatticePoint>& points
       below[a] = static_cast<double>(std::nextafter(nearest, -kFar)) + origin[a];
       above[a] = static_cast<double>(std::nextafter(nearest, kFar)) + origin[a];
     }
-    return lattice.snap(below) == p && lattice.snap(above) == p;
+    return leads_back(below, p) && leads_back(above, p);
   });
 }
 

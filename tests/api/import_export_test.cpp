@@ -120,6 +120,15 @@ TEST(Import, RefusesWhatItCannotTakeWholeAndChangesNothing) {
   EXPECT_EQ(repository->meshes().size(), 1U);
 }
 
+TEST(Export, OfTheFinestLatticeIsExact) {
+  TempRepository repository(scan(500), 200, 30);
+  const Snapshot snapshot = repository->snapshot();
+  for (const char* name : {"out.ply", "out.obj"}) {
+    (void)repository->export_mesh(snapshot, repository / name, {});
+    EXPECT_TRUE(triangle_set_of_file(snapshot.lattice(), repository / name) == triangle_set(whole(snapshot))) << name;
+  }
+}
+
 TEST(Export, OfGeoreferencedCoordinatesKeepsThem) {
   TestMesh mesh = terrain(30, 30);
   for (Point& p : mesh.positions) {
