@@ -40,13 +40,13 @@ void refuse_taken_name(db::Store& store, VersionId tip, const std::string& name)
 
 mesh_file::MeshData read_file(const std::filesystem::path& file, const ImportOptions& options, ImportReport& report) {
   mesh_file::MeshData data = mesh_file::read_mesh(file, stage(options.progress, "read"));
-  for (const auto& dropped : data.dropped) report.dropped.push_back({dropped.what, dropped.count});
   if (data.soup) {
     const std::size_t before = data.positions.size();
     mesh_file::weld_exact(data);
     report.vertices_welded = before - data.positions.size();
   }
   report.polygons_triangulated = mesh_file::triangulate(data);
+  for (const auto& dropped : data.dropped) report.dropped.push_back({dropped.what, dropped.count});
   return data;
 }
 

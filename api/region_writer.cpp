@@ -15,24 +15,25 @@ using mesh_file::FaceColor;
 /// Whether files with float32 coordinates, moved by `origin`, lead back to the same lattice points. In text such a
 /// number is read as a double up to half a float32 step away, so the steps to either side must lead back as well.
 bool floats_hold(const Lattice& lattice, const std::vector<LatticePoint>& points, const Point& origin) {
-  constexpr float kFar = std::numeric_limits<float>::infinity();
-  const auto leads_back = [&](const Point& q, LatticePoint p) {
-    try {
-      return lattice.snap(q) == p;
-    } catch (const Error&) {  // beyond the lattice
-      return false;
-    }
-  };
-  return std::all_of(points.begin(), points.end(), [&](LatticePoint p) {
+  using Float = std::numeric_limits<float>;
+  const auto holds = [&](LatticePoint p) {
     const Point exact = lattice.position(p);
-    Point below, above;
+    Point nearest, below, above;
     for (int a = 0; a < 3; ++a) {
-      const auto nearest = static_cast<float>(exact[a] - origin[a]);
-      below[a] = static_cast<double>(std::nextafter(nearest, -kFar)) + origin[a];
-      above[a] = static_cast<double>(std::nextafter(nearest, kFar)) + origin[a];
+      const double local = exact[a] - origin[a];
+      if (!(std::abs(local) <= double{Float::max()})) return false;
+      const auto number = static_cast<float>(local);
+      nearest[a] = static_cast<double>(number) + origin[a];
+      below[a] = static_cast<double>(std::nextafter(number, -Float::infinity())) + origin[a];
+      above[a] = static_cast<double>(std::nextafter(number, Float::infinity())) + origin[a];
     }
-    return leads_back(below, p) && leads_back(above, p);
-  });
+    return lattice.snap(nearest) == p && lattice.snap(below) == p && lattice.snap(above) == p;
+  };
+  try {
+    return std::all_of(points.begin(), points.end(), holds);
+  } catch (const Error&) {
+    return false;  // a neighbour lies outside the lattice, as beside its last point, or is infinite
+  }
 }
 
 /// A colour on a wheel, for things that only need to differ from their neighbours.

@@ -17,15 +17,15 @@ enum class Format { ply, obj, off, stl };
 /// From the extension, in any case. Throws invalid_argument listing the formats.
 [[nodiscard]] Format format_of(const std::filesystem::path& file);
 
-/// The number type of a file's coordinates. Text is float64: a decimal number is taken as the nearest double, never
-/// rounded to what some program may have printed it from.
+/// The number type of the coordinates that are written.
 enum class Scalar { float32, float64 };
 
 struct MeshData {
+  /// As the file has them. A decimal number is taken as the nearest double, never rounded to what some program may have
+  /// printed it from.
   std::vector<Point> positions;
   std::vector<std::uint32_t> corners;     ///< vertex indices, face after face
   std::vector<std::uint32_t> face_sizes;  ///< corners per face; empty when all faces are triangles
-  Scalar scalar = Scalar::float32;
   std::vector<std::uint64_t> vertex_ids;  ///< per vertex, from a file that write_mesh gave ids to; else empty
   bool soup = false;                      ///< every face has vertices of its own (STL)
 
@@ -33,7 +33,7 @@ struct MeshData {
     std::string what;         ///< such as "vertex property 'confidence' (float)"
     std::uint64_t count = 0;  ///< how many values, faces or lines
   };
-  std::vector<Dropped> dropped;  ///< what the file holds beside the above
+  std::vector<Dropped> dropped;  ///< what the file holds beside the above; `triangulate` adds to it
 
   [[nodiscard]] std::size_t face_count() const { return face_sizes.empty() ? corners.size() / 3 : face_sizes.size(); }
 };
@@ -47,7 +47,8 @@ struct MeshData {
 void weld_exact(MeshData& mesh);
 
 /// Cuts faces with more than three corners into triangles, by ear clipping where they are not convex. Positions and
-/// vertices stay. Returns how many faces were cut.
+/// vertices stay. Polygons that take too long become fans, whose triangles may overlap: `dropped` counts them. Returns
+/// how many faces were cut.
 std::uint64_t triangulate(MeshData& mesh);
 
 struct FaceColor {

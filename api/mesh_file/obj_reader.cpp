@@ -28,7 +28,6 @@ class ObjReader {
       throw bad_line(file_, largest_line_,
                      fmt::format("vertex index {} does not exist ({} vertices)", std::uint64_t{largest_} + 1,
                                  mesh_.positions.size()));
-    mesh_.scalar = Scalar::float64;
     dropped_.hand_over(mesh_);
   }
 

@@ -54,7 +54,6 @@ class OffReader {
     mesh_.corners.reserve(3 * faces);
     for (std::size_t f = 0; f < faces; ++f) read_face(vertices);
     if (!scan_.word_anywhere().empty()) dropped_.add("text behind the last face");
-    mesh_.scalar = Scalar::float64;
     dropped_.hand_over(mesh_);
   }
 

@@ -52,10 +52,6 @@ class BodyReader {
     const bool ids = element.has(Role::id_high) && element.has(Role::id_low);
     mesh_.positions.reserve(element.count);
     if (ids) mesh_.vertex_ids.reserve(element.count);
-    if (!Values::kBinary) mesh_.scalar = Scalar::float64;
-    for (const Property& p : element.properties)
-      if (p.role <= Role::z && (p.type == Type::float64 || p.type == Type::int32 || p.type == Type::uint32))
-        mesh_.scalar = Scalar::float64;
     if constexpr (Values::kBinary) {
       const bool fixed = std::none_of(element.properties.begin(), element.properties.end(),
                                       [](const Property& p) { return p.count_type.has_value(); });

@@ -92,7 +92,6 @@ void read_ascii(const FileBytes& file, MeshData& mesh, const Progress& progress)
     }
   }
   if (in_facet || in_solid) throw scan.bad("the file is cut off: no 'endsolid'");
-  mesh.scalar = Scalar::float64;
   if (!any) throw scan.bad("the file holds no facet");
 }
 

@@ -29,15 +29,20 @@ class EarClipper {
     }
   }
 
-  void clip(std::vector<std::uint32_t>& corners) {
+  /// False when the steps ran out and the rest became a fan.
+  bool clip(std::vector<std::uint32_t>& corners) {
     std::size_t from = 0;
     while (left_.size() > 3) {
-      if (!steps_) return fan(corners);
+      if (!steps_) {
+        fan(corners);
+        return false;
+      }
       const std::size_t ear = find_ear(from);
       cut(ear, corners);
       from = ear ? ear - 1 : 0;
     }
     corners.insert(corners.end(), left_.begin(), left_.end());
+    return true;
   }
 
  private:
@@ -95,7 +100,7 @@ class EarClipper {
 
 std::uint64_t triangulate(MeshData& mesh) {
   if (mesh.face_sizes.empty()) return 0;
-  std::uint64_t cut = 0, steps = kMostSteps + kStepsPerCorner * mesh.corners.size();
+  std::uint64_t cut = 0, fanned = 0, steps = kMostSteps + kStepsPerCorner * mesh.corners.size();
   std::vector<std::uint32_t> corners;
   corners.reserve(mesh.corners.size());
   std::size_t begin = 0;
@@ -104,12 +109,13 @@ std::uint64_t triangulate(MeshData& mesh) {
     if (size == 3)
       corners.insert(corners.end(), polygon.begin(), polygon.end());
     else
-      EarClipper(mesh.positions, polygon, steps).clip(corners);
+      fanned += !EarClipper(mesh.positions, polygon, steps).clip(corners);
     cut += size > 3;
     begin += size;
   }
   mesh.corners = std::move(corners);
   mesh.face_sizes.clear();
+  if (fanned) mesh.dropped.push_back({"outlines of polygons that take too long to cut (made fans)", fanned});
   return cut;
 }
 

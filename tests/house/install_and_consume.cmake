@@ -11,17 +11,17 @@ function(run)
   endif()
 endfunction()
 
-# The lines between two marker lines of a text, without the code fence.
+# The code block between two marker lines of a text, without its fence.
 function(cut_out text marker result)
-  string(FIND "${text}" "<!-- ${marker} -->" begin)
-  string(FIND "${text}" "<!-- end of ${marker} -->" end)
+  string(FIND "${text}" "<!-- ${marker} -->\n```cpp\n" begin)
+  string(FIND "${text}" "```\n<!-- end of ${marker} -->" end)
   if(begin EQUAL -1 OR end LESS begin)
-    message(FATAL_ERROR "README.md has no block between <!-- ${marker} --> and <!-- end of ${marker} -->")
+    message(FATAL_ERROR "README.md has no code between <!-- ${marker} --> and <!-- end of ${marker} -->")
   endif()
+  string(LENGTH "<!-- ${marker} -->\n```cpp\n" fence)
+  math(EXPR begin "${begin} + ${fence}")
   math(EXPR length "${end} - ${begin}")
   string(SUBSTRING "${text}" ${begin} ${length} block)
-  string(REGEX REPLACE "^[^`]*```[a-z]*\n" "" block "${block}")
-  string(REGEX REPLACE "```\n*$" "" block "${block}")
   set(${result} "${block}" PARENT_SCOPE)
 endfunction()
 

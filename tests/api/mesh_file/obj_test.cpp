@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <bit>
 
+#include <bit>
 #include <cstdlib>
 
 #include "api/mesh_file/file_bytes.h"
@@ -13,7 +13,6 @@ namespace ramcdb::test {
 namespace {
 
 using Indices = std::vector<std::uint32_t>;
-using mesh_file::Scalar;
 using testing::HasSubstr;
 
 const std::string kFour = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -101,7 +100,6 @@ TEST(Obj, NumbersAreTheNearestDoubles) {
     EXPECT_EQ(std::bit_cast<std::uint64_t>(mesh.positions[0].x),
               std::bit_cast<std::uint64_t>(std::strtod(number, nullptr)))
         << number;
-    EXPECT_EQ(mesh.scalar, Scalar::float64);
   }
 }
 

@@ -171,6 +171,7 @@ TEST(Triangulate, OtherPolygonsStayWhole) {
   EXPECT_EQ((std::vector<std::uint32_t>(mesh.corners.begin(), mesh.corners.begin() + 3)),
             (std::vector<std::uint32_t>{0, 1, 2}));
   EXPECT_EQ(mesh_file::triangulate(mesh), 0U);
+  EXPECT_TRUE(mesh.dropped.empty());
 }
 
 TEST(Triangulate, PolygonsWithoutShapeTakeLittleTime) {
@@ -189,6 +190,7 @@ TEST(Triangulate, PolygonsWithoutShapeTakeLittleTime) {
     EXPECT_EQ(mesh_file::triangulate(mesh), 1U);
     EXPECT_EQ(mesh.face_count(), kCorners - 2);
     EXPECT_TRUE(is_sound(mesh));
+    EXPECT_EQ(mesh.dropped.size(), kind > 1 ? 1U : 0U);  // fans are told of
   }
 }
 

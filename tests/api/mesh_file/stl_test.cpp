@@ -37,7 +37,6 @@ TEST(Stl, FormsOfText) {
     EXPECT_EQ(mesh.positions, kCorners) << text;
     EXPECT_EQ(mesh.corners, (std::vector<std::uint32_t>{0, 1, 2}));
     EXPECT_TRUE(mesh.soup);
-    EXPECT_EQ(mesh.scalar, mesh_file::Scalar::float64);
   }
 }
 
@@ -50,7 +49,6 @@ TEST(Stl, DoublesInText) {
   std::string text = "solid\n" + kFacet + "endsolid\n";
   text.replace(text.find("0.5"), 3, "0.12345678901234567");
   const auto mesh = read_text("a.stl", text);
-  EXPECT_EQ(mesh.scalar, mesh_file::Scalar::float64);
   EXPECT_EQ(mesh.positions[2].z, 0.12345678901234567);
 }
 
