@@ -17,11 +17,22 @@ std::string place(const Snapshot::Impl& at, const PageChart& chart) {
   return fmt::format("chart {} of mesh {}, written by version {}", chart.id.value, at.root().name, chart.version.value);
 }
 
+/// Every triangle a polygon of its own.
+codec::Polygons only_triangles(std::size_t faces) {
+  codec::Polygons polygons;
+  polygons.sizes.assign(faces, 3);
+  for (std::uint32_t f = 0; f < faces; ++f) polygons.of_face.push_back(f);
+  for (std::uint32_t c = 0; c < 3 * faces; ++c) polygons.corners.push_back(c);
+  return polygons;
+}
+
 }  // namespace
 
 struct ChartLoader::Job {
   PageChart entry;
   Buffer blob;
+  bool with_layers = false;
+  std::vector<Buffer> layers;  ///< as in `entry.layers`
 };
 
 Border border_of(const std::vector<WireLoop>& loops, const std::function<const LoadedWire&(WireId)>& wire) {
@@ -73,17 +84,52 @@ LoadedChart ChartLoader::decode(const Job& job) const {
   } catch (const Error& e) {
     throw Error(e.code(), fmt::format("{}: {}", place(at_, job.entry), e.what()), {}, "run `ramcdb verify`");
   }
-  LoadedChart loaded{job.entry, std::move(decoded.chart), std::move(border.keys), decoded.cost,
-                     job.blob.size() + kBlobOverhead};
+  LoadedChart loaded{
+      job.entry, std::move(decoded.chart), std::move(border.keys), decoded.cost, job.blob.size() + kBlobOverhead, {},
+      {}};
   const std::size_t inner = loaded.chart.positions.size() - loaded.keys.size();
   if (inner != job.entry.inner_vertices || loaded.chart.faces.size() != job.entry.faces)
     throw Error(Errc::corrupt, "the chart's counts are not those of its index page", place(at_, job.entry),
                 "run `ramcdb verify`");
   for (std::uint32_t i = 0; i < inner; ++i) loaded.keys.push_back({VertexKey::Where::chart, job.entry.id.value, i});
+  if (job.with_layers) decode_layers(job, loaded);
   return loaded;
 }
 
-std::vector<LoadedChart> ChartLoader::load(std::span<const ChartId> charts, unsigned threads, ReadCost* cost) {
+void ChartLoader::read_layers(Job& job, db::BlobReader& reader) const {
+  job.with_layers = true;
+  for (const LayerRef& ref : job.entry.layers)
+    job.layers.push_back(
+        reader.get({db::Kind::attribute, at_.root().mesh, job.entry.id.value, ref.version, ref.layer}));
+}
+
+void ChartLoader::decode_layers(const Job& job, LoadedChart& loaded) const {
+  const auto& layers = at_.layers().layers;
+  if (layers.empty()) return;
+  if (at_.layers().polygons()) loaded.polygons = only_triangles(loaded.chart.faces.size());
+  const codec::LayerOrder order(loaded.chart);
+  loaded.layers.resize(layers.size());
+  std::size_t next = 0;
+  try {
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      const bool has_blob = next < job.layers.size() && job.entry.layers[next].layer == layers[i].id;
+      if (layers[i].coding == LayerCoding::polygons) {
+        if (has_blob) loaded.polygons = codec::decode_polygons(job.layers[next], loaded.chart, order);
+      } else if (has_blob) {
+        loaded.layers[i] = codec::decode_layer(job.layers[next], layers[i].shape(), loaded.chart, order);
+      } else {
+        throw Error(Errc::corrupt, fmt::format("the chart has no values of '{}'", layers[i].info.name));
+      }
+      next += has_blob;
+    }
+    if (next != job.layers.size()) throw Error(Errc::corrupt, "the chart has a layer that the mesh does not know");
+  } catch (const Error& e) {
+    throw Error(e.code(), fmt::format("{}: {}", place(at_, job.entry), e.what()), {}, "run `ramcdb verify`");
+  }
+}
+
+std::vector<LoadedChart> ChartLoader::load(std::span<const ChartId> charts, unsigned threads, ReadCost* cost,
+                                           bool with_layers) {
   const auto reader = at_.store().reader();
   std::vector<Job> jobs;
   jobs.reserve(charts.size());
@@ -96,7 +142,8 @@ std::vector<LoadedChart> ChartLoader::load(std::span<const ChartId> charts, unsi
     if (jobs.size() % kBatch == kBatch - 1) reader->renew();
     const PageChart& entry = *find_chart(*leaf->leaf, id);
     read_wires(*leaf->leaf, entry, *reader);
-    jobs.push_back({entry, reader->get({db::Kind::chart, at_.root().mesh, id.value, entry.version, 0})});
+    jobs.push_back({entry, reader->get({db::Kind::chart, at_.root().mesh, id.value, entry.version, 0}), false, {}});
+    if (with_layers) read_layers(jobs.back(), *reader);
   }
   if (cost) {
     cost->blobs += reader->blobs_read();

@@ -7,6 +7,8 @@
 
 #include "api/snapshot_impl.h"
 #include "codec/chart_codec.h"
+#include "codec/layer_codec.h"
+#include "codec/polygon_codec.h"
 #include "ramcdb/snapshot.h"
 
 namespace ramcdb::detail {
@@ -17,7 +19,9 @@ struct LoadedChart {
   Chart chart;
   std::vector<VertexKey> keys;  ///< per local vertex; border vertices may repeat a key
   codec::ChartCost cost;
-  std::uint64_t blob_bytes = 0;  ///< checksum included
+  std::uint64_t blob_bytes = 0;            ///< checksum included
+  std::vector<codec::LayerValues> layers;  ///< per layer of the mesh, when asked for; those of polygons are empty
+  codec::Polygons polygons;                ///< when asked for and the mesh has any
 };
 
 /// A wire with its decoded points.
@@ -34,7 +38,7 @@ class ChartLoader {
 
   /// Decodes charts, in the order asked. Throws not_found for an unknown id, corrupt naming chart and version.
   [[nodiscard]] std::vector<LoadedChart> load(std::span<const ChartId> charts, unsigned threads = 1,
-                                              ReadCost* cost = nullptr);
+                                              ReadCost* cost = nullptr, bool with_layers = false);
 
   /// The wires read so far, with all wires that loaded charts pass among them.
   [[nodiscard]] const std::unordered_map<WireId, LoadedWire>& wires() const { return wires_; }
@@ -42,7 +46,9 @@ class ChartLoader {
  private:
   struct Job;
   void read_wires(const LeafPage& leaf, const PageChart& chart, db::BlobReader& reader);
+  void read_layers(Job& job, db::BlobReader& reader) const;
   [[nodiscard]] LoadedChart decode(const Job& job) const;
+  void decode_layers(const Job& job, LoadedChart& loaded) const;
 
   const Snapshot::Impl& at_;
   std::unordered_map<WireId, LoadedWire> wires_;

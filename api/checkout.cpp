@@ -18,7 +18,8 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-CheckoutReport report_for(const Snapshot& snapshot, const RegionMesh& region, const ReadCost& cost) {
+CheckoutReport report_for(const Snapshot& snapshot, const RegionMesh& region, const ReadCost& cost,
+                          const WrittenRegion& written) {
   CheckoutReport report;
   report.revision = snapshot.version();
   report.charts = region.charts.size();
@@ -27,6 +28,7 @@ CheckoutReport report_for(const Snapshot& snapshot, const RegionMesh& region, co
   report.bytes_read = cost.bytes;
   report.blobs_read = cost.blobs;
   report.pages_read = cost.pages;
+  for (const auto& dropped : written.left_out) report.left_out.push_back({dropped.what, dropped.count});
   return report;
 }
 
@@ -51,7 +53,7 @@ struct EditedFile {
   std::vector<std::unique_ptr<Snapshot::Impl>> snapshots;
   std::vector<RegionPart> parts;
   RegionMesh region;
-  std::vector<VertexMove> moves;
+  Edit edit;
   ChangeReport change;
 };
 
@@ -76,16 +78,18 @@ EditedFile read_edited_file(const std::shared_ptr<db::Store>& store, const std::
         std::make_unique<Snapshot::Impl>(store, part.version, root_named(roots, edited.sidecar.mesh, part.version)));
     edited.parts.push_back({edited.snapshots.back().get(), part.charts});
   }
-  edited.region = load_region(edited.parts, 1);
-  mesh_file::MeshData data = mesh_file::read_mesh(file);
+  edited.region = load_region(edited.parts, 1, nullptr, true);
+  const mesh_file::MeshData data = mesh_file::read_mesh(file);
   const Lattice& lattice = edited.parts.front().at->record().lattice;
   const bool trust_ids = edited.parts.size() == 1 && edited.sidecar.ids_version == edited.parts.front().at->version();
   try {
-    edited.moves = moves_in_file(edited.region, lattice, data, edited.sidecar.local_origin, trust_ids);
+    FileEdit found = edit_in_file(edited.region, lattice, data, edited.sidecar.local_origin, trust_ids);
+    edited.edit.moves = std::move(found.moves);
+    edited.edit.layers = changed_values(edited.region, edited.parts.front().at->layers(), found.attributes);
   } catch (const Error& e) {
     throw Error(e.code(), fmt::format("{}: {}", file.string(), e.what()));
   }
-  edited.change = describe_moves(edited.region, edited.moves, lattice);
+  edited.change = describe_edit(edited.region, edited.edit, lattice);
   return edited;
 }
 
@@ -116,11 +120,12 @@ CheckoutReport checkout_region(db::Store& store, const std::filesystem::path& re
   const auto start = Clock::now();
   refuse_to_overwrite(file, options);
   ReadCost cost;
-  const RegionMesh region = snapshot.read(charts, options.threads, &cost);
+  const RegionMesh region = snapshot.read_with_attributes(charts, options.threads, &cost);
   std::error_code ignored;
   std::filesystem::remove(sidecar_path(file), ignored);
   Sidecar sidecar;
-  sidecar.local_origin = write_region(snapshot, region, file, options, true, true);
+  const WrittenRegion written = write_region(snapshot, region, file, options, true, true);
+  sidecar.local_origin = written.local_origin;
   sidecar.repository_id = store.id();
   sidecar.repository = repository;
   sidecar.mesh = snapshot.impl().root().name;
@@ -130,7 +135,7 @@ CheckoutReport checkout_region(db::Store& store, const std::filesystem::path& re
   sidecar.nonce = db::new_attempt_id();
   sidecar.painted = options.paint != Paint::none;
   write_sidecar(file, sidecar);
-  CheckoutReport report = report_for(snapshot, region, cost);
+  CheckoutReport report = report_for(snapshot, region, cost, written);
   report.seconds = seconds_since(start);
   return report;
 }
@@ -140,9 +145,9 @@ CheckoutReport export_mesh(const Snapshot& snapshot, const std::filesystem::path
   refuse_to_overwrite(file, options);
   ReadCost cost;
   const auto charts = snapshot.find({{WholeMesh{}}, 0}, &cost);
-  const RegionMesh region = snapshot.read(charts, options.threads, &cost);
-  (void)write_region(snapshot, region, file, options, false, false);
-  CheckoutReport report = report_for(snapshot, region, cost);
+  const RegionMesh region = snapshot.read_with_attributes(charts, options.threads, &cost);
+  const WrittenRegion written = write_region(snapshot, region, file, options, false, false);
+  CheckoutReport report = report_for(snapshot, region, cost, written);
   report.seconds = seconds_since(start);
   return report;
 }
@@ -157,8 +162,8 @@ CommitReport commit_file(const std::shared_ptr<db::Store>& store, const std::fil
                          const CommitOptions& options) {
   const auto start = Clock::now();
   EditedFile edited = read_edited_file(store, file);
-  CommitReport report = commit_moves(edited.parts, edited.change, edited.moves, options,
-                                     attempt_name(edited.sidecar.nonce, options.branch, edited.moves));
+  CommitReport report = commit_edit(edited.parts, edited.change, edited.edit, options,
+                                    attempt_name(edited.sidecar.nonce, options.branch, edited.edit));
   if (report.conflicts.empty() && !report.nothing_changed) {
     move_sidecar_on(edited, file, report.revision);
   }

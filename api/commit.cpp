@@ -38,6 +38,14 @@ const db::MeshRoot* root_of(const std::vector<db::MeshRoot>& roots, MeshId mesh)
   return it == roots.end() ? nullptr : &*it;
 }
 
+/// Whether only `mine` wrote what a chart now has other than before.
+bool is_work_of(VersionId mine, const ChartState& was, const ChartState& is) {
+  if (was.size() != is.size()) return false;
+  for (std::size_t i = 0; i < is.size(); ++i)
+    if (is[i] != was[i] && is[i] != mine) return false;
+  return true;
+}
+
 /// The charts that `version` holds in a state other than the region's, or than the one that `mine` wrote.
 std::vector<ChartId> charts_other_than(std::span<const RegionPart> parts, VersionId version, VersionId mine) {
   const Snapshot::Impl& base = newest(parts);
@@ -51,9 +59,9 @@ std::vector<ChartId> charts_other_than(std::span<const RegionPart> parts, Versio
     if (*root == part.at->root()) continue;
     for (const ChartId id : part.charts) {
       const auto before = part.at->pages().leaf_of(id), now = there.leaf_of(id);
-      const VersionId was = find_chart(*before->leaf, id)->version;
-      const VersionId is = now ? find_chart(*now->leaf, id)->version : VersionId();
-      if (is != was && (!mine || is != mine)) others.push_back(id);
+      const ChartState was = state_of(*find_chart(*before->leaf, id));
+      const ChartState is = now ? state_of(*find_chart(*now->leaf, id)) : ChartState{};
+      if (is != was && !(mine && is_work_of(mine, was, is))) others.push_back(id);
     }
   }
   std::sort(others.begin(), others.end());
@@ -67,10 +75,14 @@ std::size_t position_of(const std::vector<ChartId>& charts, ChartId id) {
 CommitReport report_for(const ChangeReport& change, const EncodedEdit& edit) {
   CommitReport report;
   report.charts_touched = change.charts_touched.size();
-  report.charts_reencoded = edit.charts.size();
+  report.values_changed = change.values_changed;
   report.wires_reencoded = static_cast<std::uint64_t>(
       std::count_if(edit.wires.begin(), edit.wires.end(), [](const auto& w) { return !w.second.blob.empty(); }));
-  for (const auto& [id, chart] : edit.charts) report.ranges_expanded += chart.expanded_range;
+  for (const auto& [id, chart] : edit.charts) {
+    report.charts_reencoded += !chart.blob.empty();
+    report.layers_reencoded += chart.layers.size();
+    report.ranges_expanded += chart.expanded_range;
+  }
   report.vertices_moved = change.vertices_moved;
   report.max_displacement = change.max_displacement;
   return report;
@@ -79,6 +91,11 @@ CommitReport report_for(const ChangeReport& change, const EncodedEdit& edit) {
 /// Puts the blobs of an edit and lets the record's totals follow.
 void put_edit(const EncodedEdit& edit, MeshId mesh, db::Writer& writer, MeshRecord& record) {
   for (const auto& [id, chart] : edit.charts) {
+    for (const RecodedLayer& layer : chart.layers) {
+      record.layer_bytes += layer.blob.size() + kBlobOverhead - layer.bytes_before;
+      writer.put({db::Kind::attribute, mesh, id.value, {}, layer.layer}, layer.blob);
+    }
+    if (chart.blob.empty()) continue;
     writer.put({db::Kind::chart, mesh, id.value, {}, 0}, chart.blob);
     record.chart_cost.header += chart.cost.header - chart.cost_before.header;
     record.chart_cost.connectivity += chart.cost.connectivity - chart.cost_before.connectivity;
@@ -97,10 +114,10 @@ db::ChangedCharts changed_charts(MeshId mesh, const EncodedEdit& edit) {
   return changed;
 }
 
-std::string figures_of(const CommitReport& report) {
+std::string figures_of(const CommitReport& report, std::size_t charts) {
   VersionFigures figures;
   figures.operation = "commit";
-  figures.charts_touched = report.charts_reencoded;
+  figures.charts_touched = charts;
   figures.vertices_moved = report.vertices_moved;
   figures.max_displacement = report.max_displacement;
   figures.bytes_written = report.bytes_written;
@@ -137,13 +154,37 @@ void publish(const Snapshot::Impl& base, const EncodedEdit& edit, const CommitOp
   info.changed = {changed_charts(base.root().mesh, edit)};
   report.parent = tip;
   report.bytes_written = writer->bytes_put();
-  info.figures = figures_of(report);
+  info.figures = figures_of(report, edit.charts.size());
   report.revision = writer->publish(info);
+}
+
+/// How many values changed in each chart; those of shared vertices count in every chart of the region.
+std::map<ChartId, std::uint64_t> values_by_chart(const RegionMesh& region, std::span<const LayerEdit> layers) {
+  std::map<ChartId, std::uint64_t> counts;
+  std::set<std::uint64_t> vertices;
+  for (const LayerEdit& layer : layers) {
+    for (const auto& [chart, values] : layer.in_charts) counts[chart] += values.size();
+    for (const auto& [key, value] : layer.at_vertices) {
+      const VertexKey vertex = VertexKey::unpack(key);
+      if (vertex.where == VertexKey::Where::chart)
+        ++counts[ChartId(vertex.id)];
+      else
+        vertices.insert(key);
+    }
+  }
+  if (vertices.empty()) return counts;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
+  for (std::size_t f = 0; f < region.faces.size(); ++f)
+    for (const std::uint32_t v : region.faces[f])
+      if (vertices.contains(region.keys[v].packed()) && seen.insert({region.chart_of_face[f], v}).second)
+        ++counts[region.charts[region.chart_of_face[f]]];
+  return counts;
 }
 
 }  // namespace
 
-ChangeReport describe_moves(const RegionMesh& region, std::span<const VertexMove> moves, const Lattice& lattice) {
+ChangeReport describe_edit(const RegionMesh& region, const Edit& edit, const Lattice& lattice) {
+  const std::vector<VertexMove>& moves = edit.moves;
   ChangeReport report;
   std::map<std::uint64_t, const VertexMove*> by_key;
   double squares = 0;
@@ -170,9 +211,13 @@ ChangeReport describe_moves(const RegionMesh& region, std::span<const VertexMove
   for (std::uint32_t v = 0; v < region.keys.size(); ++v)  // isolated vertices are in no face
     if (move_of[v] && region.keys[v].where == VertexKey::Where::chart)
       moved_in[position_of(region.charts, ChartId(region.keys[v].id))].insert(v);
+  const std::map<ChartId, std::uint64_t> values = values_by_chart(region, edit.layers);
+  for (const LayerEdit& layer : edit.layers) report.values_changed += layer.count();
   for (std::size_t c = 0; c < region.charts.size(); ++c) {
-    if (moved_in[c].empty()) continue;
-    ChangeReport::ChartChange change{region.charts[c], moved_in[c].size(), 0};
+    const auto changed = values.find(region.charts[c]);
+    if (moved_in[c].empty() && changed == values.end()) continue;
+    ChangeReport::ChartChange change{region.charts[c], moved_in[c].size(), 0,
+                                     changed == values.end() ? 0 : changed->second};
     for (const std::uint32_t v : moved_in[c])
       change.max_displacement = std::max(change.max_displacement, distance(lattice, *move_of[v]));
     report.per_chart.push_back(change);
@@ -194,40 +239,51 @@ std::vector<ChartId> changed_by_others(std::span<const RegionPart> parts, Versio
   return charts_other_than(parts, version, version);
 }
 
-std::string attempt_name(std::string_view nonce, std::string_view branch, std::span<const VertexMove> moves) {
+std::string attempt_name(std::string_view nonce, std::string_view branch, const Edit& edit) {
   XXH3_state_t state;
   XXH3_128bits_reset(&state);
   XXH3_128bits_update(&state, nonce.data(), nonce.size());
   XXH3_128bits_update(&state, branch.data(), branch.size());
-  for (const VertexMove& move : moves) {
-    const std::uint64_t key = move.key.packed();
+  const auto add = [&](std::uint64_t number) { XXH3_128bits_update(&state, &number, sizeof number); };
+  const auto add_value = [&](const CodedValue& value) {
+    add(value.absent);
+    for (const std::uint64_t number : value.numbers) add(number);
+  };
+  for (const VertexMove& move : edit.moves) {
     const std::int32_t to[3] = {move.to.x, move.to.y, move.to.z};
-    XXH3_128bits_update(&state, &key, sizeof key);
+    add(move.key.packed());
     XXH3_128bits_update(&state, to, sizeof to);
+  }
+  for (const LayerEdit& layer : edit.layers) {
+    add(layer.layer.id);
+    for (const auto& [key, value] : layer.at_vertices) add(key), add_value(value);
+    for (const auto& [chart, values] : layer.in_charts)
+      for (const auto& [index, value] : values) add(chart.value), add(index), add_value(value);
   }
   const XXH128_hash_t hash = XXH3_128bits_digest(&state);
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
-CommitReport commit_moves(std::span<const RegionPart> parts, const ChangeReport& change,
-                          std::span<const VertexMove> moves, const CommitOptions& options, const std::string& attempt) {
+CommitReport commit_edit(std::span<const RegionPart> parts, const ChangeReport& change, const Edit& edit,
+                         const CommitOptions& options, const std::string& attempt) {
   const auto start = std::chrono::steady_clock::now();
   const Snapshot::Impl& base = newest(parts);
   CommitReport report;
-  if (moves.empty()) {
+  if (edit.empty()) {
     report.nothing_changed = true;
     report.revision = report.parent = base.version();
   } else if (const auto published = base.store().published_by(attempt)) {
     report.revision = *published;
     report.vertices_moved = change.vertices_moved;
+    report.values_changed = change.values_changed;
     report.max_displacement = change.max_displacement;
     report.charts_touched = change.charts_touched.size();
     const auto parents = base.store().version(*published).parents;
     if (!parents.empty()) report.parent = parents.front();
   } else {
-    const EncodedEdit edit = encode_moves(parts, moves, options.threads);
-    report = report_for(change, edit);
-    publish(base, edit, options, attempt, report);
+    const EncodedEdit encoded = encode_edit(parts, edit, options.threads);
+    report = report_for(change, encoded);
+    publish(base, encoded, options, attempt, report);
   }
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;

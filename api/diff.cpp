@@ -20,7 +20,7 @@ using PageKey = std::pair<PageId, VersionId>;
 struct Frontier {
   const PageIndex& index;
   std::set<PageKey> pages;
-  std::map<ChartId, VersionId> charts;  ///< of leaves that the other version does not share
+  std::map<ChartId, ChartState> charts;  ///< of leaves that the other version does not share
 
   void open_all() {
     std::set<PageKey> below;
@@ -29,7 +29,7 @@ struct Frontier {
       if (const auto* inner = std::get_if<InnerPage>(&*loaded.page))
         for (const PageEntry& e : inner->pages) below.insert({e.id, e.version});
       else
-        for (const PageChart& c : std::get<LeafPage>(*loaded.page).charts) charts.emplace(c.id, c.version);
+        for (const PageChart& c : std::get<LeafPage>(*loaded.page).charts) charts.emplace(c.id, state_of(c));
     }
     pages = std::move(below);
   }
@@ -73,7 +73,8 @@ class Displacements {
 /// told apart by their keys, inner ones by the faces around them, for re-encoding renumbers them.
 std::vector<LatticePoint> targets_of(const LoadedChart& a, const LoadedChart& b) {
   if (a.chart.faces.size() != b.chart.faces.size() || a.chart.positions.size() != b.chart.positions.size()) return {};
-  const Matching matching = match_faces({a.chart.positions, a.chart.faces}, {b.chart.positions, b.chart.faces});
+  const TriangleCorners faces_a(a.chart.faces), faces_b(b.chart.faces);
+  const Matching matching = match_faces(faces_a.over(a.chart.positions), faces_b.over(b.chart.positions));
   if (matching.unmatched) return {};
   std::vector<LatticePoint> to = a.chart.positions;
   std::vector<bool> known(to.size(), false);

@@ -1,10 +1,12 @@
 #include "api/edit_encoder.h"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include "api/parallel.h"
 #include "api/region_query.h"
+#include "api/store_format.h"
 #include "codec/wire_codec.h"
 
 namespace ramcdb::detail {
@@ -12,17 +14,18 @@ namespace {
 
 using MoveTable = std::unordered_map<std::uint64_t, LatticePoint>;
 
-/// Everything that the moves touch. The snapshot of a chart or wire is that of the region's part which knows it, and
+/// Everything that vertices touch. The snapshot of a chart or wire is that of the region's part which knows it, and
 /// the newest part's for all outside the region.
 class Touched {
  public:
-  Touched(std::span<const RegionPart> parts, std::span<const VertexMove> moves) : parts_(parts) {
+  Touched(std::span<const RegionPart> parts, std::span<const VertexKey> keys) : parts_(parts) {
     std::set<std::uint32_t> wires, corners, charts;
-    for (const VertexMove& move : moves) {
-      if (move.key.where == VertexKey::Where::chart) charts.insert(move.key.id);
-      if (move.key.where == VertexKey::Where::wire) wires.insert(move.key.id);
-      if (move.key.where == VertexKey::Where::corner) corners.insert(move.key.id);
+    for (const VertexKey& key : keys) {
+      if (key.where == VertexKey::Where::chart) charts.insert(key.id);
+      if (key.where == VertexKey::Where::wire) wires.insert(key.id);
+      if (key.where == VertexKey::Where::corner) corners.insert(key.id);
     }
+    if (keys.empty()) return;
     for (const RegionPart& part : parts) {
       for (const ChartId id : part.charts) {
         const auto ref = part.at->pages().leaf_of(id);
@@ -49,6 +52,18 @@ class Touched {
     }
   }
 
+  /// The part of the region that knows a chart, or its newest one.
+ public:
+  [[nodiscard]] const Snapshot::Impl& part_of(ChartId chart) const {
+    const RegionPart* newest = &parts_.front();
+    for (const RegionPart& part : parts_) {
+      if (std::find(part.charts.begin(), part.charts.end(), chart) != part.charts.end()) return *part.at;
+      if (part.at->version() > newest->at->version()) newest = &part;
+    }
+    return *newest->at;
+  }
+
+ private:
   void add_around_corner(ChartId id, CornerId corner) {
     const Snapshot::Impl& at = part_of(id);
     charts_.emplace(id, &at);
@@ -63,15 +78,6 @@ class Touched {
   void add_wire(const PageWire& wire) {
     wires_.insert(wire.id);
     for (const ChartId chart : wire.charts) charts_.emplace(chart, &part_of(chart));
-  }
-
-  const Snapshot::Impl& part_of(ChartId chart) const {
-    const RegionPart* newest = &parts_.front();
-    for (const RegionPart& part : parts_) {
-      if (std::find(part.charts.begin(), part.charts.end(), chart) != part.charts.end()) return *part.at;
-      if (part.at->version() > newest->at->version()) newest = &part;
-    }
-    return *newest->at;
   }
 
   std::span<const RegionPart> parts_;
@@ -97,41 +103,192 @@ RecodedWire recode_wire(const LoadedWire& loaded, const MoveTable& moves) {
   return recoded;
 }
 
-RecodedChart recode_chart(const Snapshot::Impl& at, LoadedChart loaded, const MoveTable& moves) {
-  move_points(loaded.chart.positions, loaded.keys, moves);
-  const MeshRecord& record = at.record();
-  auto encoded = codec::encode_chart(loaded.chart, record.profile, at.tables(record.table), record.range);
-  RecodedChart recoded{loaded.entry, loaded.entry, std::move(encoded.blob),
-                       loaded.cost,  encoded.cost, encoded.expanded_range};
-  recoded.entry.table = record.table;
-  recoded.entry.box = {};
-  for (const LatticePoint p : loaded.chart.positions) recoded.entry.box.add(p);
-  return recoded;
+/// The values of a chart in the numbering of its newly coded self.
+codec::LayerValues renumbered(const codec::LayerValues& values, const codec::LayerShape& shape,
+                              const codec::EncodedChart& chart) {
+  codec::LayerValues out;
+  const auto take = [&](std::size_t at) {
+    const auto first = values.numbers.begin() + static_cast<std::ptrdiff_t>(at * shape.components);
+    out.numbers.insert(out.numbers.end(), first, first + shape.components);
+    if (!values.absent.empty()) out.absent.push_back(values.absent[at]);
+  };
+  if (shape.of == AttributeOf::vertex) {
+    for (const std::uint32_t v : chart.source_vertex) take(v);
+  } else {
+    for (const std::uint32_t corner : chart.source_corner) {
+      if (shape.of == AttributeOf::face) {
+        take(corner / 3);
+        continue;
+      }
+      for (std::uint32_t i = 0; i < 3; ++i) take(3 * (corner / 3) + (corner + i) % 3);
+    }
+  }
+  return out;
+}
+
+codec::Polygons renumbered(const codec::Polygons& polygons, const codec::EncodedChart& chart) {
+  codec::Polygons out;
+  out.sizes = polygons.sizes;
+  std::vector<std::uint32_t> now(3 * chart.source_corner.size());
+  for (std::uint32_t f = 0; f < chart.source_corner.size(); ++f) {
+    const std::uint32_t corner = chart.source_corner[f];
+    out.of_face.push_back(polygons.of_face[corner / 3]);
+    for (std::uint32_t i = 0; i < 3; ++i) now[3 * (corner / 3) + (corner + i) % 3] = 3 * f + i;
+  }
+  for (const std::uint32_t corner : polygons.corners) out.corners.push_back(now[corner]);
+  return out;
+}
+
+/// Whether layers coded for the old chart are good for the new one.
+bool keeps_order(const Chart& before, const codec::EncodedChart& after) {
+  const codec::LayerOrder old_order(before), new_order(after.decoded);
+  for (std::size_t i = 0; i < old_order.vertices().size(); ++i)
+    if (after.source_vertex[new_order.vertices()[i]] != old_order.vertices()[i]) return false;
+  for (std::size_t i = 0; i < old_order.entries().size(); ++i) {
+    const std::uint32_t entry = new_order.entries()[i], corner = after.source_corner[entry / 3];
+    if (3 * (corner / 3) + (corner + entry) % 3 != old_order.entries()[i]) return false;
+  }
+  return true;
+}
+
+class ChartRecoder {
+ public:
+  ChartRecoder(const Snapshot::Impl& at, const MoveTable& moves, std::span<const LayerEdit> layers)
+      : at_(at), moves_(moves), layers_(layers) {}
+
+  RecodedChart run(LoadedChart loaded, bool moved, bool values_changed) const {
+    RecodedChart recoded;
+    recoded.base = recoded.entry = loaded.entry;
+    recoded.cost_before = recoded.cost = loaded.cost;
+    std::optional<codec::EncodedChart> encoded;
+    if (moved) encoded = recode_geometry(loaded, recoded);
+    const bool reordered = moved && !loaded.entry.layers.empty() && !keeps_order(loaded.chart, *encoded);
+    if (reordered && loaded.layers.empty()) loaded = with_layers(loaded.entry.id);
+    if (values_changed || reordered) recode_layers(loaded, encoded, reordered, recoded);
+    return recoded;
+  }
+
+ private:
+  codec::EncodedChart recode_geometry(const LoadedChart& loaded, RecodedChart& recoded) const {
+    Chart moved = loaded.chart;
+    move_points(moved.positions, loaded.keys, moves_);
+    const MeshRecord& record = at_.record();
+    auto encoded = codec::encode_chart(moved, record.profile, at_.tables(record.table), record.range);
+    recoded.blob = encoded.blob;
+    recoded.cost = encoded.cost;
+    recoded.expanded_range = encoded.expanded_range;
+    recoded.entry.table = record.table;
+    recoded.entry.box = {};
+    for (const LatticePoint p : moved.positions) recoded.entry.box.add(p);
+    return encoded;
+  }
+
+  [[nodiscard]] LoadedChart with_layers(ChartId id) const {
+    return std::move(ChartLoader(at_).load(std::span(&id, 1), 1, nullptr, true).front());
+  }
+
+  /// \param all whether every layer is to be coded, in the numbering of `encoded`
+  void recode_layers(LoadedChart& loaded, const std::optional<codec::EncodedChart>& encoded, bool all,
+                     RecodedChart& recoded) const {
+    const auto& layers = at_.layers().layers;
+    const Chart& chart = encoded ? encoded->decoded : loaded.chart;
+    const codec::LayerOrder order(chart);
+    const auto reader = at_.store().reader();
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      const auto ref = std::find_if(loaded.entry.layers.begin(), loaded.entry.layers.end(),
+                                    [&](const LayerRef& r) { return r.layer == layers[i].id; });
+      if (ref == loaded.entry.layers.end()) continue;  // polygons of triangles alone
+      Buffer blob;
+      if (layers[i].coding == LayerCoding::polygons) {
+        if (!all) continue;
+        blob = codec::encode_polygons(encoded ? renumbered(loaded.polygons, *encoded) : loaded.polygons, chart, order);
+      } else {
+        const bool edited = apply_edits(loaded, layers[i], loaded.layers[i]);
+        if (!all && !edited) continue;
+        const codec::LayerShape shape = layers[i].shape();
+        blob = codec::encode_layer(encoded ? renumbered(loaded.layers[i], shape, *encoded) : loaded.layers[i], shape,
+                                   chart, order);
+      }
+      const Buffer before =
+          reader->get({db::Kind::attribute, at_.root().mesh, loaded.entry.id.value, ref->version, ref->layer});
+      if (before != blob) recoded.layers.push_back({layers[i].id, std::move(blob), before.size() + kBlobOverhead});
+    }
+  }
+
+  bool apply_edits(const LoadedChart& loaded, const Layer& layer, codec::LayerValues& values) const {
+    bool any = false;
+    for (const LayerEdit& edit : layers_) {
+      if (edit.layer.id != layer.id) continue;
+      if (const auto at = edit.in_charts.find(loaded.entry.id); at != edit.in_charts.end())
+        for (const auto& [index, value] : at->second) any |= put(values, layer, index, value);
+      if (edit.at_vertices.empty()) continue;
+      for (std::size_t v = 0; v < loaded.keys.size(); ++v)
+        if (const auto at = edit.at_vertices.find(loaded.keys[v].packed()); at != edit.at_vertices.end())
+          any |= put(values, layer, v, at->second);
+    }
+    return any;
+  }
+
+  static bool put(codec::LayerValues& values, const Layer& layer, std::size_t at, const CodedValue& value) {
+    if (value.absent && values.absent.empty()) values.absent.resize(values.numbers.size() / layer.info.components);
+    if (!values.absent.empty()) values.absent[at] = value.absent;
+    std::copy(value.numbers.begin(), value.numbers.end(),
+              values.numbers.begin() + static_cast<std::ptrdiff_t>(at * layer.info.components));
+    return true;
+  }
+
+  const Snapshot::Impl& at_;
+  const MoveTable& moves_;
+  std::span<const LayerEdit> layers_;
+};
+
+std::vector<VertexKey> keys_of(std::span<const VertexMove> moves) {
+  std::vector<VertexKey> keys;
+  for (const VertexMove& move : moves) keys.push_back(move.key);
+  return keys;
+}
+
+std::vector<VertexKey> keys_of(std::span<const LayerEdit> layers) {
+  std::vector<VertexKey> keys;
+  for (const LayerEdit& edit : layers)
+    for (const auto& [key, value] : edit.at_vertices) keys.push_back(VertexKey::unpack(key));
+  return keys;
 }
 
 }  // namespace
 
-EncodedEdit encode_moves(std::span<const RegionPart> parts, std::span<const VertexMove> moves, unsigned threads) {
-  const Touched touched(parts, moves);
+EncodedEdit encode_edit(std::span<const RegionPart> parts, const Edit& edit, unsigned threads) {
+  const std::vector<VertexKey> moved_keys = keys_of(edit.moves), value_keys = keys_of(edit.layers);
+  const Touched moved(parts, moved_keys), valued(parts, value_keys);
   MoveTable table;
-  EncodedEdit edit;
-  for (const VertexMove& move : moves) {
+  EncodedEdit encoded;
+  for (const VertexMove& move : edit.moves) {
     table.emplace(move.key.packed(), move.to);
-    if (move.key.where == VertexKey::Where::corner) edit.corners.emplace(CornerId(move.key.id), move.to);
+    if (move.key.where == VertexKey::Where::corner) encoded.corners.emplace(CornerId(move.key.id), move.to);
   }
-  std::map<const Snapshot::Impl*, std::vector<ChartId>> by_snapshot;
-  for (const auto& [id, at] : touched.charts()) by_snapshot[at].push_back(id);
-  for (auto& [at, ids] : by_snapshot) {
+  std::map<ChartId, const Snapshot::Impl*> charts = moved.charts(), with_values = valued.charts();
+  for (const LayerEdit& layer : edit.layers)
+    for (const auto& [id, values] : layer.in_charts) with_values.emplace(id, &moved.part_of(id));
+  charts.insert(with_values.begin(), with_values.end());
+
+  std::map<std::pair<const Snapshot::Impl*, bool>, std::vector<ChartId>> jobs;
+  for (const auto& [id, at] : charts) jobs[{at, with_values.contains(id)}].push_back(id);
+  for (const auto& [job, ids] : jobs) {
+    const auto& [at, values_changed] = job;
     ChartLoader loader(*at);
-    std::vector<LoadedChart> loaded = loader.load(ids, threads);
+    std::vector<LoadedChart> loaded = loader.load(ids, threads, nullptr, values_changed);
     std::vector<RecodedChart> recoded(loaded.size());
-    parallel_for(loaded.size(), threads,
-                 [&](std::size_t i) { recoded[i] = recode_chart(*at, std::move(loaded[i]), table); });
-    for (RecodedChart& chart : recoded) edit.charts.emplace(chart.base.id, std::move(chart));
+    const ChartRecoder recoder(*at, table, edit.layers);
+    parallel_for(loaded.size(), threads, [&](std::size_t i) {
+      recoded[i] = recoder.run(std::move(loaded[i]), moved.charts().contains(ids[i]), values_changed);
+    });
+    for (RecodedChart& chart : recoded)
+      if (!chart.blob.empty() || !chart.layers.empty()) encoded.charts.emplace(chart.base.id, std::move(chart));
     for (const auto& [id, wire] : loader.wires())
-      if (touched.wires().contains(id) && !edit.wires.contains(id)) edit.wires.emplace(id, recode_wire(wire, table));
+      if (moved.wires().contains(id) && !encoded.wires.contains(id))
+        encoded.wires.emplace(id, recode_wire(wire, table));
   }
-  return edit;
+  return encoded;
 }
 
 }  // namespace ramcdb::detail

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "api/chart_loader.h"
+#include "api/layer_edit.h"
 #include "api/region_mesh.h"
 
 namespace ramcdb::detail {
@@ -17,13 +18,20 @@ struct VertexMove {
   LatticePoint from, to;
 };
 
-/// A chart that was coded anew, and what it was decided on.
-struct RecodedChart {
-  PageChart base;  ///< as it stood: the tip must still have this very version
-  PageChart entry;
+struct RecodedLayer {
+  std::uint16_t layer = 0;
   Buffer blob;
+  std::uint64_t bytes_before = 0;  ///< checksum included
+};
+
+/// A chart of which something was coded anew, and what it was decided on.
+struct RecodedChart {
+  PageChart base;  ///< as it stood: the tip must still have this very state
+  PageChart entry;
+  Buffer blob;  ///< empty when its geometry stays
   codec::ChartCost cost_before, cost;
   bool expanded_range = false;
+  std::vector<RecodedLayer> layers;
 };
 
 struct RecodedWire {
@@ -39,11 +47,20 @@ struct EncodedEdit {
   std::map<CornerId, LatticePoint> corners;
 };
 
-/// Codes the charts and wires that moved vertices touch. A moved inner vertex touches its chart; a point of a wire, the
-/// wire and every chart on it; a corner, all wires that end there and all charts around it, also those outside the
-/// region, whose other vertices stay. No connectivity changes, so wires, corners and loops keep their ids.
+/// What an edit changes.
+struct Edit {
+  std::vector<VertexMove> moves;
+  std::vector<LayerEdit> layers;
+
+  [[nodiscard]] bool empty() const { return moves.empty() && layers.empty(); }
+};
+
+/// Codes the charts and wires that an edit touches. A moved inner vertex touches its chart; a point of a wire, the wire
+/// and every chart on it; a corner, all wires that end there and all charts around it, also those outside the region,
+/// whose other vertices stay. A changed value touches its layer in the same charts, and nothing else. No connectivity
+/// changes, so wires, corners and loops keep their ids. Layers follow connectivity, so they stay when vertices move;
+/// only where a component has no border to begin at may another order of its faces make them new.
 /// \param parts the region that the keys belong to; keys of one part's charts refer to its version.
-[[nodiscard]] EncodedEdit encode_moves(std::span<const RegionPart> parts, std::span<const VertexMove> moves,
-                                       unsigned threads);
+[[nodiscard]] EncodedEdit encode_edit(std::span<const RegionPart> parts, const Edit& edit, unsigned threads);
 
 }  // namespace ramcdb::detail

@@ -86,27 +86,27 @@ class EditTransaction::Impl {
     if (!taken.empty())
       throw Error(Errc::invalid_argument, "the region overlaps a patch of this edit", "charts " + taken,
                   "edit them in the patch that is out already");
-    patches_.push_back(std::make_unique<Patch>(base_, base_.read(charts, threads)));
+    patches_.push_back(std::make_unique<Patch>(base_, base_.read_with_attributes(charts, threads)));
     charts_out_.insert(charts.begin(), charts.end());
     return *patches_.back();
   }
 
   [[nodiscard]] ChangeReport status() const {
     require_open();
-    const Edit edit = collect();
-    ChangeReport report = detail::describe_moves(edit.region, edit.moves, base_.lattice());
-    const detail::RegionPart part{&base_.impl(), edit.region.charts};
+    const Collected all = collect();
+    ChangeReport report = detail::describe_edit(all.region, all.edit, base_.lattice());
+    const detail::RegionPart part{&base_.impl(), all.region.charts};
     detail::compare_with_tip(report, std::span(&part, 1), branch_);
     return report;
   }
 
   CommitReport commit(const CommitOptions& options) {
     require_open();
-    const Edit edit = collect();
-    const detail::RegionPart part{&base_.impl(), edit.region.charts};
-    const ChangeReport change = detail::describe_moves(edit.region, edit.moves, base_.lattice());
-    const std::string attempt = detail::attempt_name(nonce_, options.branch, edit.moves);
-    CommitReport report = detail::commit_moves(std::span(&part, 1), change, edit.moves, options, attempt);
+    const Collected all = collect();
+    const detail::RegionPart part{&base_.impl(), all.region.charts};
+    const ChangeReport change = detail::describe_edit(all.region, all.edit, base_.lattice());
+    const std::string attempt = detail::attempt_name(nonce_, options.branch, all.edit);
+    CommitReport report = detail::commit_edit(std::span(&part, 1), change, all.edit, options, attempt);
     if (report.conflicts.empty()) abort();
     return report;
   }
@@ -117,26 +117,39 @@ class EditTransaction::Impl {
   }
 
  private:
-  /// All patches as one region, with the moves of all.
-  struct Edit {
+  /// All patches as one region, with the edits of all.
+  struct Collected {
     RegionMesh region;
-    std::vector<VertexMove> moves;
+    detail::Edit edit;
   };
 
-  [[nodiscard]] Edit collect() const {
+  [[nodiscard]] Collected collect() const {
     std::map<std::uint64_t, VertexMove> moves;
-    for (const auto& patch : patches_)
+    std::map<std::uint16_t, detail::LayerEdit> layers;
+    for (const auto& patch : patches_) {
       for (const VertexMove& move : moves_of(*patch)) {
         const auto [it, is_new] = moves.emplace(move.key.packed(), move);
         if (!is_new && it->second.to != move.to) refuse_split(move);
       }
-    Edit edit;
+      for (auto& edit : detail::changed_values(patch->region(), base_.impl().layers(), patch->attributes())) {
+        detail::LayerEdit& all = layers[edit.layer.id];
+        all.layer = edit.layer;
+        all.at_vertices.merge(edit.at_vertices);
+        all.in_charts.merge(edit.in_charts);
+        for (const auto& [key, value] : edit.at_vertices)  // those that another patch has, too
+          if (all.at_vertices.at(key) != value)
+            throw Error(Errc::invalid_argument, "two patches gave their shared vertex different values",
+                        edit.layer.info.name, "check both regions out as one patch");
+      }
+    }
+    Collected all;
     if (!charts_out_.empty()) {
       const std::vector<ChartId> charts(charts_out_.begin(), charts_out_.end());
-      edit.region = base_.read(charts);
+      all.region = base_.read(charts);
     }
-    for (const auto& [key, move] : moves) edit.moves.push_back(move);
-    return edit;
+    for (const auto& [key, move] : moves) all.edit.moves.push_back(move);
+    for (auto& [id, layer] : layers) all.edit.layers.push_back(std::move(layer));
+    return all;
   }
 
   [[noreturn]] void refuse_split(const VertexMove& move) const {

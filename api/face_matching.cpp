@@ -10,61 +10,81 @@ namespace {
 
 constexpr std::uint32_t kNone = FaceMatch::kNone;
 
-/// Three positions, turned so that the smallest sequence comes first.
+/// A face, begun at its smallest sequence of positions.
 struct Shape {
-  std::array<LatticePoint, 3> p;
-  std::uint32_t turn = 0;  ///< p[i] is corner (i + turn) % 3 of the face
   std::uint32_t face = 0;
+  std::uint32_t turn = 0;
 };
 
-Shape shape_of(const Surface& s, std::uint32_t face) {
-  Shape best;
-  for (std::uint32_t turn = 0; turn < 3; ++turn) {
-    Shape shape{{}, turn, face};
-    for (std::uint32_t i = 0; i < 3; ++i) shape.p[i] = s.points[s.faces[face][(i + turn) % 3]];
-    if (turn == 0 || shape.p < best.p) best = shape;
+/// Compares two faces corner by corner from their turns on; larger faces are greater.
+int compare(const Surface& s, Shape a, const Surface& t, Shape b) {
+  const std::uint32_t size = s.size(a.face), other = t.size(b.face);
+  if (size != other) return size < other ? -1 : 1;
+  for (std::uint32_t i = 0; i < size; ++i) {
+    const auto order = s.point(a.face, a.turn + i) <=> t.point(b.face, b.turn + i);
+    if (order != 0) return order < 0 ? -1 : 1;
   }
+  return 0;
+}
+
+Shape shape_of(const Surface& s, std::uint32_t face) {
+  Shape best{face, 0};
+  for (std::uint32_t turn = 1; turn < s.size(face); ++turn)
+    if (compare(s, {face, turn}, s, best) < 0) best.turn = turn;
   return best;
 }
 
 std::vector<Shape> sorted_shapes(const Surface& s) {
-  std::vector<Shape> shapes(s.faces.size());
-  for (std::uint32_t f = 0; f < s.faces.size(); ++f) shapes[f] = shape_of(s, f);
-  std::sort(shapes.begin(), shapes.end(),
-            [](const Shape& a, const Shape& b) { return std::tie(a.p, a.face) < std::tie(b.p, b.face); });
+  std::vector<Shape> shapes(s.face_count());
+  for (std::uint32_t f = 0; f < shapes.size(); ++f) shapes[f] = shape_of(s, f);
+  std::sort(shapes.begin(), shapes.end(), [&](Shape a, Shape b) {
+    const int order = compare(s, a, s, b);
+    return order != 0 ? order < 0 : a.face < b.face;
+  });
   return shapes;
 }
 
-/// The directed edge from corner 3 * face + i to the next corner of the face, by vertices.
+/// Corner -> face and following corner.
+struct CornerMap {
+  std::vector<std::uint32_t> face, next;
+
+  explicit CornerMap(const Surface& s) {
+    for (std::uint32_t f = 0; f < s.face_count(); ++f)
+      for (std::uint32_t i = 0; i < s.size(f); ++i) {
+        face.push_back(f);
+        next.push_back(s.corner(f, i + 1));
+      }
+  }
+};
+
+/// The directed edge from a corner to the next one of its face, by vertices.
 struct Edge {
   std::uint32_t a, b, corner;
 };
 
 /// For every directed edge the corner of the one face that passes it the other way; kNone on borders and wherever more
 /// than two faces meet.
-std::vector<std::uint32_t> opposite_corners(const Surface& s) {
+std::vector<std::uint32_t> opposite_corners(const CornerMap& map, std::span<const std::uint32_t> vertices) {
   std::vector<Edge> edges;
-  edges.reserve(3 * s.faces.size());
-  for (std::uint32_t f = 0; f < s.faces.size(); ++f)
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      const std::uint32_t a = s.faces[f][i], b = s.faces[f][(i + 1) % 3];
-      edges.push_back({std::min(a, b), std::max(a, b), 3 * f + i});
-    }
+  edges.reserve(vertices.size());
+  for (std::uint32_t c = 0; c < vertices.size(); ++c) {
+    const std::uint32_t a = vertices[c], b = vertices[map.next[c]];
+    edges.push_back({std::min(a, b), std::max(a, b), c});
+  }
   std::sort(edges.begin(), edges.end(),
             [](const Edge& x, const Edge& y) { return std::tie(x.a, x.b, x.corner) < std::tie(y.a, y.b, y.corner); });
   std::vector<std::uint32_t> opposite(edges.size(), kNone);
-  const auto start = [&](std::uint32_t corner) { return s.faces[corner / 3][corner % 3]; };
   for (std::size_t i = 0, end; i < edges.size(); i = end) {
     for (end = i; end < edges.size() && edges[end].a == edges[i].a && edges[end].b == edges[i].b;) ++end;
-    if (end - i != 2 || start(edges[i].corner) == start(edges[i + 1].corner)) continue;
+    if (end - i != 2 || vertices[edges[i].corner] == vertices[edges[i + 1].corner]) continue;
     opposite[edges[i].corner] = edges[i + 1].corner;
     opposite[edges[i + 1].corner] = edges[i].corner;
   }
   return opposite;
 }
 
-/// A surface whose vertices are one per position, so that a soup has neighbours too.
-std::vector<Triangle> welded_faces(const Surface& s) {
+/// Corners with one vertex per position, so that a soup has neighbours too.
+std::vector<std::uint32_t> welded_corners(const Surface& s) {
   std::vector<std::uint32_t> order(s.points.size());
   std::iota(order.begin(), order.end(), 0U);
   std::sort(order.begin(), order.end(),
@@ -73,20 +93,24 @@ std::vector<Triangle> welded_faces(const Surface& s) {
   for (std::size_t i = 0; i < order.size(); ++i)
     representative[order[i]] =
         i && s.points[order[i]] == s.points[order[i - 1]] ? representative[order[i - 1]] : order[i];
-  std::vector<Triangle> faces(s.faces.begin(), s.faces.end());
-  for (Triangle& t : faces)
-    for (std::uint32_t& v : t) v = representative[v];
-  return faces;
+  std::vector<std::uint32_t> corners(s.corners.begin(), s.corners.end());
+  for (std::uint32_t& v : corners) v = representative[v];
+  return corners;
 }
 
 class Matcher {
  public:
   Matcher(const Surface& from, const Surface& to)
-      : from_(from), to_(to), matches_(from.faces.size()), taken_(to.faces.size(), false) {}
+      : from_(from),
+        to_(to),
+        from_map_(from),
+        to_map_(to),
+        matches_(from.face_count()),
+        taken_(to.face_count(), false) {}
 
   Matching run() {
-    from_opposite_ = opposites_of(from_);
-    to_opposite_ = opposites_of(to_);
+    from_opposite_ = opposites_of(from_, from_map_);
+    to_opposite_ = opposites_of(to_, to_map_);
     match_unique_shapes();
     walk();
     match_unique_edges();
@@ -102,10 +126,9 @@ class Matcher {
 
  private:
   /// Neighbours by vertices; where vertices have none, by positions.
-  static std::vector<std::uint32_t> opposites_of(const Surface& s) {
-    std::vector<std::uint32_t> opposite = opposite_corners(s);
-    const std::vector<Triangle> welded = welded_faces(s);
-    const std::vector<std::uint32_t> by_position = opposite_corners({s.points, welded});
+  static std::vector<std::uint32_t> opposites_of(const Surface& s, const CornerMap& map) {
+    std::vector<std::uint32_t> opposite = opposite_corners(map, s.corners);
+    const std::vector<std::uint32_t> by_position = opposite_corners(map, welded_corners(s));
     for (std::size_t c = 0; c < opposite.size(); ++c) {
       const std::uint32_t other = by_position[c];
       if (opposite[c] == kNone && other != kNone && opposite[other] == kNone) {
@@ -117,27 +140,32 @@ class Matcher {
   }
 
   bool match(std::uint32_t f, std::uint32_t g, std::uint32_t turn) {
-    if (matches_[f].face != kNone || taken_[g]) return false;
+    if (matches_[f].face != kNone || taken_[g] || from_.size(f) != to_.size(g)) return false;
     matches_[f] = {g, turn};
     taken_[g] = true;
     front_.push_back(f);
     return true;
   }
 
-  void match_shapes(const Shape& a, const Shape& b) { match(a.face, b.face, (b.turn + 3 - a.turn) % 3); }
+  void match_shapes(Shape a, Shape b) {
+    const std::uint32_t size = from_.size(a.face);
+    match(a.face, b.face, (b.turn + size - a.turn) % size);
+  }
 
   /// Calls `group` with each run of equal shapes, [begin, end) in either list, where both have some.
   template <class Visit>
-  static void for_equal(const std::vector<Shape>& a, const std::vector<Shape>& b, Visit&& group) {
+  void for_equal(Visit&& group) const {
+    const std::vector<Shape>&a = from_shapes_, &b = to_shapes_;
     for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
-      if (a[i].p < b[j].p) {
+      const int order = compare(from_, a[i], to_, b[j]);
+      if (order < 0) {
         ++i;
-      } else if (b[j].p < a[i].p) {
+      } else if (order > 0) {
         ++j;
       } else {
         std::size_t i_end = i, j_end = j;
-        while (i_end < a.size() && a[i_end].p == a[i].p) ++i_end;
-        while (j_end < b.size() && b[j_end].p == b[j].p) ++j_end;
+        while (i_end < a.size() && compare(from_, a[i_end], from_, a[i]) == 0) ++i_end;
+        while (j_end < b.size() && compare(to_, b[j_end], to_, b[j]) == 0) ++j_end;
         group(i, i_end, j, j_end);
         i = i_end;
         j = j_end;
@@ -148,16 +176,22 @@ class Matcher {
   void match_unique_shapes() {
     from_shapes_ = sorted_shapes(from_);
     to_shapes_ = sorted_shapes(to_);
-    for_equal(from_shapes_, to_shapes_, [&](std::size_t i, std::size_t i_end, std::size_t j, std::size_t j_end) {
-      const bool turns_clear =
-          !(from_shapes_[i].p[0] == from_shapes_[i].p[1] && from_shapes_[i].p[1] == from_shapes_[i].p[2]);
-      if (i_end - i == 1 && j_end - j == 1 && turns_clear) match_shapes(from_shapes_[i], to_shapes_[j]);
+    for_equal([&](std::size_t i, std::size_t i_end, std::size_t j, std::size_t j_end) {
+      if (i_end - i == 1 && j_end - j == 1 && begins_once(from_shapes_[i]))
+        match_shapes(from_shapes_[i], to_shapes_[j]);
     });
+  }
+
+  /// Whether the smallest sequence of a face begins at one of its corners only.
+  [[nodiscard]] bool begins_once(Shape shape) const {
+    for (std::uint32_t turn = 1; turn < from_.size(shape.face); ++turn)
+      if (compare(from_, {shape.face, shape.turn + turn}, from_, shape) == 0) return false;
+    return true;
   }
 
   /// What is left of several faces in one place: they are alike, any pairing gives the same surface.
   void match_equal_shapes() {
-    for_equal(from_shapes_, to_shapes_, [&](std::size_t i, std::size_t i_end, std::size_t j, std::size_t j_end) {
+    for_equal([&](std::size_t i, std::size_t i_end, std::size_t j, std::size_t j_end) {
       while (i < i_end && j < j_end) {
         if (matches_[from_shapes_[i].face].face != kNone) {
           ++i;
@@ -178,10 +212,9 @@ class Matcher {
   template <class IsFree>
   static std::vector<PlacedEdge> free_edges(const Surface& s, IsFree&& is_free) {
     std::vector<PlacedEdge> edges;
-    for (std::uint32_t f = 0; f < s.faces.size(); ++f) {
+    for (std::uint32_t f = 0; f < s.face_count(); ++f) {
       if (!is_free(f)) continue;
-      for (std::uint32_t i = 0; i < 3; ++i)
-        edges.push_back({s.points[s.faces[f][i]], s.points[s.faces[f][(i + 1) % 3]], 3 * f + i});
+      for (std::uint32_t i = 0; i < s.size(f); ++i) edges.push_back({s.point(f, i), s.point(f, i + 1), s.corner(f, i)});
     }
     std::sort(edges.begin(), edges.end(), [](const PlacedEdge& x, const PlacedEdge& y) {
       return std::tie(x.a, x.b, x.corner) < std::tie(y.a, y.b, y.corner);
@@ -208,7 +241,9 @@ class Matcher {
   }
 
   bool match_corners(std::uint32_t from_corner, std::uint32_t to_corner) {
-    return match(from_corner / 3, to_corner / 3, (to_corner % 3 + 3 - from_corner % 3) % 3);
+    const std::uint32_t f = from_map_.face[from_corner], g = to_map_.face[to_corner], size = to_.size(g);
+    if (from_.size(f) != size) return false;
+    return match(f, g, (to_corner - to_.firsts[g] + size - (from_corner - from_.firsts[f])) % size);
   }
 
   void walk() {
@@ -216,8 +251,9 @@ class Matcher {
       const std::uint32_t f = front_.back();
       front_.pop_back();
       const FaceMatch m = matches_[f];
-      for (std::uint32_t i = 0; i < 3; ++i) {
-        const std::uint32_t mine = from_opposite_[3 * f + i], theirs = to_opposite_[3 * m.face + (i + m.turn) % 3];
+      for (std::uint32_t i = 0; i < from_.size(f); ++i) {
+        const std::uint32_t mine = from_opposite_[from_.corner(f, i)];
+        const std::uint32_t theirs = to_opposite_[to_.corner(m.face, i + m.turn)];
         if (mine != kNone && theirs != kNone) match_corners(mine, theirs);
       }
     }
@@ -225,6 +261,7 @@ class Matcher {
 
   const Surface& from_;
   const Surface& to_;
+  CornerMap from_map_, to_map_;
   std::vector<FaceMatch> matches_;
   std::vector<bool> taken_;
   std::vector<std::uint32_t> from_opposite_, to_opposite_, front_;
@@ -232,6 +269,14 @@ class Matcher {
 };
 
 }  // namespace
+
+TriangleCorners::TriangleCorners(std::span<const Triangle> faces) : firsts_{0} {
+  corners_.reserve(3 * faces.size());
+  for (const Triangle& t : faces) {
+    corners_.insert(corners_.end(), t.begin(), t.end());
+    firsts_.push_back(static_cast<std::uint32_t>(corners_.size()));
+  }
+}
 
 Matching match_faces(const Surface& from, const Surface& to) { return Matcher(from, to).run(); }
 

@@ -45,24 +45,30 @@ mesh_file::MeshData read_file(const std::filesystem::path& file, const ImportOpt
     mesh_file::weld_exact(data);
     report.vertices_welded = before - data.positions.size();
   }
-  report.polygons_triangulated = mesh_file::triangulate(data);
   for (const auto& dropped : data.dropped) report.dropped.push_back({dropped.what, dropped.count});
   return data;
 }
 
-/// Snaps every position, and measures how far the farthest moved along an axis.
-chartify::IndexedMesh snap_to(const Lattice& lattice, const mesh_file::MeshData& data, double& measured_error) {
-  chartify::IndexedMesh mesh;
-  mesh.positions.reserve(data.positions.size());
-  for (const Point& p : data.positions) {
-    mesh.positions.push_back(lattice.snap(p));
-    const Point q = lattice.position(mesh.positions.back());
+/// Snaps every position, and measures how far the farthest moved along an axis. The file's positions become lattice
+/// points too, so that polygons are cut by these: the same however often a mesh goes out and in.
+std::vector<LatticePoint> snap_to(const Lattice& lattice, mesh_file::MeshData& data, double& measured_error) {
+  std::vector<LatticePoint> points;
+  points.reserve(data.positions.size());
+  for (Point& p : data.positions) {
+    const LatticePoint snapped = lattice.snap(p);
+    const Point q = lattice.position(snapped);
     for (int a = 0; a < 3; ++a) measured_error = std::max(measured_error, std::abs(q[a] - p[a]));
+    p = {static_cast<double>(snapped.x), static_cast<double>(snapped.y), static_cast<double>(snapped.z)};
+    points.push_back(snapped);
   }
-  mesh.faces.reserve(data.corners.size() / 3);
-  for (std::size_t c = 0; c + 2 < data.corners.size(); c += 3)
-    mesh.faces.push_back({data.corners[c], data.corners[c + 1], data.corners[c + 2]});
-  return mesh;
+  return points;
+}
+
+std::vector<Triangle> triangles_of(const mesh_file::MeshData& data, const mesh_file::Triangulation& cut) {
+  std::vector<Triangle> faces;
+  faces.reserve(cut.corners.size());
+  for (const Triangle& t : cut.corners) faces.push_back({data.corners[t[0]], data.corners[t[1]], data.corners[t[2]]});
+  return faces;
 }
 
 void note_topology(MeshRecord& record, const chartify::IndexedMesh& mesh) {
@@ -89,10 +95,25 @@ void note_encoding(MeshRecord& record, const EncodedMesh& encoded) {
   record.next_corner = CornerId(static_cast<std::uint32_t>(record.corners + 1));
   for (const Buffer& wire : encoded.wires)
     if (!wire.empty()) record.wire_bytes += wire.size() + kBlobOverhead;
+  for (const auto& chart : encoded.layers)
+    for (const LayerSource::Blob& layer : chart) record.layer_bytes += layer.bytes.size() + kBlobOverhead;
+}
+
+/// The layer table has a key of its own among the layers: chart 0.
+void put_layers(db::Writer& writer, MeshId mesh, EncodedMesh& encoded, const LayerTable& table, MeshRecord& record) {
+  if (table.empty()) return;
+  Buffer blob = encode_layer_table(table);
+  record.layers = writer.version();
+  record.table_bytes += blob.size() + kBlobOverhead;
+  writer.put({db::Kind::attribute, mesh, 0, {}, 0}, std::move(blob));
+  for (std::uint32_t c = 0; c < encoded.layers.size(); ++c)
+    for (LayerSource::Blob& layer : encoded.layers[c])
+      writer.put({db::Kind::attribute, mesh, c + 1, {}, layer.layer}, std::move(layer.bytes));
 }
 
 /// Puts all blobs under the attempt's version and returns where the mesh stands.
-db::MeshRoot put_mesh(db::Writer& writer, const std::string& name, EncodedMesh& encoded, MeshRecord& record) {
+db::MeshRoot put_mesh(db::Writer& writer, const std::string& name, EncodedMesh& encoded, const LayerTable& table,
+                      MeshRecord& record) {
   const MeshId mesh = writer.new_mesh_id();
   const VersionId version = writer.version();
   const std::vector<Page> pages = build_pages(encoded, version);
@@ -106,6 +127,7 @@ db::MeshRoot put_mesh(db::Writer& writer, const std::string& name, EncodedMesh& 
     writer.put({db::Kind::chart, mesh, c + 1, {}, 0}, std::move(encoded.charts[c]));
   for (std::uint32_t w = 0; w < encoded.wires.size(); ++w)
     if (!encoded.wires[w].empty()) writer.put({db::Kind::wire, mesh, w + 1, {}, 0}, std::move(encoded.wires[w]));
+  put_layers(writer, mesh, encoded, table, record);
   writer.put({db::Kind::mesh_record, mesh, 1, {}, 0}, encode_record(record));
   return {mesh, name, PageId(static_cast<std::uint32_t>(pages.size())), version, version};
 }
@@ -117,7 +139,7 @@ db::ChangedCharts all_charts(MeshId mesh, std::uint64_t count) {
 }
 
 void publish(db::Store& store, const std::string& name, const std::filesystem::path& file, const ImportOptions& options,
-             EncodedMesh& encoded, MeshRecord& record) {
+             EncodedMesh& encoded, const LayerTable& table, MeshRecord& record) {
   const auto writer = store.writer();
   const VersionId tip = writer->tip(options.branch);
   refuse_taken_name(store, tip, name);
@@ -129,7 +151,7 @@ void publish(db::Store& store, const std::string& name, const std::filesystem::p
   info.message = options.message.empty() ? "import " + file.filename().string() : options.message;
   info.attempt = db::new_attempt_id();
   info.roots = store.roots(tip);
-  info.roots.push_back(put_mesh(*writer, name, encoded, record));
+  info.roots.push_back(put_mesh(*writer, name, encoded, table, record));
   info.changed = {all_charts(info.roots.back().mesh, record.charts)};
   VersionFigures figures;
   figures.operation = "import";
@@ -149,29 +171,33 @@ ImportReport import_mesh(db::Store& store, const std::filesystem::path& file, co
   name = mesh_name(file, options);
   refuse_taken_name(store, store.resolve(options.branch), name);
   MeshRecord record;
-  chartify::CanonicalMesh canonical;
-  {
-    const mesh_file::MeshData data = read_file(file, options, report);
-    record.lattice = choose_lattice(data.positions, options);
-    record.target_faces = options.chart_faces;
-    canonical = chartify::canonical_order(snap_to(record.lattice, data, report.measured_error));
-  }
+  mesh_file::MeshData data = read_file(file, options, report);
+  record.lattice = choose_lattice(data.positions, options);
+  record.target_faces = options.chart_faces;
+  std::vector<LatticePoint> points = snap_to(record.lattice, data, report.measured_error);
+  const mesh_file::Triangulation cut = mesh_file::triangulate(data);
+  record.polygons = report.polygons = cut.polygons;
+  report.polygons_as_fans = cut.fans;
+  const chartify::CanonicalMesh canonical = chartify::canonical_order({std::move(points), triangles_of(data, cut)});
+  const LayerSource layers(data, cut, canonical, options.lossless_attributes);
   note_topology(record, canonical.mesh);
   for (const LatticePoint p : canonical.mesh.positions) record.range.add(p);
 
   chartify::Options chartify_options;
   chartify_options.target_faces = options.chart_faces;
   chartify_options.method = options.paper_chartify ? chartify::Method::paper : chartify::Method::refined;
+  const std::vector<std::uint32_t> polygons = layers.polygon_of_face();
+  chartify_options.polygon_of_face = polygons;
   chartify_options.threads = options.threads;
   chartify_options.progress = stage(options.progress, "chartify");
   const chartify::Charts charts = chartify::chartify(canonical.mesh, chartify_options);
   const chartify::WireNet net = chartify::build_wire_net(canonical.mesh, charts);
 
-  EncodedMesh encoded = encode_mesh(canonical.mesh, net, record, codec::CoderTables{}, options.threads,
+  EncodedMesh encoded = encode_mesh(canonical.mesh, net, layers, record, codec::CoderTables{}, options.threads,
                                     stage(options.progress, "encode"));
   note_encoding(record, encoded);
   stage(options.progress, "store");
-  publish(store, name, file, options, encoded, record);
+  publish(store, name, file, options, encoded, layers.table(), record);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
 }

@@ -47,6 +47,7 @@ LeafPage build_leaf(const EncodedMesh& mesh, std::size_t first, std::size_t last
   for (std::size_t c = first; c < last; ++c) {
     leaf.charts.push_back(mesh.chart_entries[c]);
     leaf.charts.back().version = version;
+    for (LayerRef& layer : leaf.charts.back().layers) layer.version = version;
     for (const WireLoop& loop : mesh.chart_entries[c].loops)
       for (const DirectedWire step : loop) wires.insert(step.wire);
   }
@@ -61,20 +62,23 @@ LeafPage build_leaf(const EncodedMesh& mesh, std::size_t first, std::size_t last
 
 }  // namespace
 
-EncodedMesh encode_mesh(const chartify::IndexedMesh& mesh, const chartify::WireNet& net, const MeshRecord& record,
-                        const codec::CoderTables& tables, unsigned threads,
+EncodedMesh encode_mesh(const chartify::IndexedMesh& mesh, const chartify::WireNet& net, const LayerSource& layers,
+                        const MeshRecord& record, const codec::CoderTables& tables, unsigned threads,
                         const std::function<void(double)>& progress) {
   EncodedMesh out;
   out.charts.resize(net.charts.size());
   out.chart_entries.resize(net.charts.size());
+  out.layers.resize(net.charts.size());
   std::vector<codec::ChartCost> costs(net.charts.size());
   parallel_for(
       net.charts.size(), threads,
       [&](std::size_t c) {
         auto encoded = codec::encode_chart(net.charts[c].chart, record.profile, tables, record.range);
+        out.layers[c] = layers.encode(net.charts[c], encoded);
         out.charts[c] = std::move(encoded.blob);
         costs[c] = encoded.cost;
         out.chart_entries[c] = chart_entry(net.charts[c], static_cast<std::uint32_t>(c), record.table);
+        for (const LayerSource::Blob& blob : out.layers[c]) out.chart_entries[c].layers.push_back({blob.layer, {}});
       },
       progress);
   for (const codec::ChartCost& cost : costs) {

@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "api/layer_source.h"
 #include "api/mesh_record.h"
 #include "chartify/wire_net_builder.h"
 #include "codec/tables.h"
@@ -13,16 +14,19 @@ namespace ramcdb::detail {
 /// All blobs of a new mesh but its pages, with the ids that they get: position in the wire-net + 1.
 struct EncodedMesh {
   std::vector<Buffer> charts;
-  std::vector<Buffer> wires;  ///< empty for a wire without inner points
+  std::vector<Buffer> wires;                           ///< empty for a wire without inner points
+  std::vector<std::vector<LayerSource::Blob>> layers;  ///< per chart
   std::vector<PageChart> chart_entries;
   std::vector<PageWire> wire_entries;
   std::vector<PageCorner> corner_entries;
   codec::ChartCost cost;
 };
 
-/// Codes every chart and wire. Versions in the entries are left 0: they are known once the writer is.
+/// Codes every chart with its layers, and every wire. Versions in the entries are left 0: they are known once the
+/// writer is.
 [[nodiscard]] EncodedMesh encode_mesh(const chartify::IndexedMesh& mesh, const chartify::WireNet& net,
-                                      const MeshRecord& record, const codec::CoderTables& tables, unsigned threads,
+                                      const LayerSource& layers, const MeshRecord& record,
+                                      const codec::CoderTables& tables, unsigned threads,
                                       const std::function<void(double)>& progress);
 
 /// The pages of a new mesh, from the leaves up to the root, which is the last. Their ids are positions + 1.

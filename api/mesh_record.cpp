@@ -40,6 +40,8 @@ void visit_counters(Record& r, Visit&& visit) {
   visit("pb", r.page_bytes);
   visit("wb", r.wire_bytes);
   visit("tb", r.table_bytes);
+  visit("lb", r.layer_bytes);
+  visit("po", r.polygons);
 }
 
 template <class Record, class Visit>
@@ -50,6 +52,7 @@ void visit_ids(Record& r, Visit&& visit) {
   visit("np", r.next_page.value);
   visit("nt", r.next_table.value);
   visit("ti", r.table.value);
+  visit("la", r.layers.value);
   visit("tf", r.target_faces);
 }
 

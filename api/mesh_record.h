@@ -24,6 +24,7 @@ struct MeshRecord {
   CornerId next_corner{1};
   PageId next_page{1};
   TableId next_table{1};
+  VersionId layers;  ///< the version that wrote the layer table; 0: the mesh has no layers
 
   std::uint64_t vertices = 0, faces = 0, charts = 0, wires = 0, corners = 0;
   std::uint64_t components = 0, boundary_loops = 0, nonmanifold_edges = 0, nonmanifold_vertices = 0;
@@ -32,7 +33,9 @@ struct MeshRecord {
   codec::ChartCost chart_cost;    ///< of all charts, in 1/256 bit, without checksums
   std::uint64_t page_bytes = 0;   ///< of all pages, checksums included
   std::uint64_t wire_bytes = 0;   ///< of all wire blobs, checksums included
-  std::uint64_t table_bytes = 0;  ///< of all coder tables, checksums included
+  std::uint64_t table_bytes = 0;  ///< of all coder tables and the layer table, checksums included
+  std::uint64_t layer_bytes = 0;  ///< of all layer blobs, checksums included
+  std::uint64_t polygons = 0;     ///< faces of the file with more than three corners
 };
 
 /// As CBOR with short keys.

@@ -130,4 +130,10 @@ LatticeBox PageIndex::box() const {
   return entry_for(*page(root_.root_page, root_.root_version).page, root_.root_page, root_.root_version).box;
 }
 
+ChartState state_of(const PageChart& chart) {
+  ChartState state{chart.version};
+  for (const LayerRef& layer : chart.layers) state.push_back(layer.version);
+  return state;
+}
+
 }  // namespace ramcdb::detail

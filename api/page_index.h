@@ -56,6 +56,10 @@ class PageIndex {
   mutable std::map<std::pair<PageId, VersionId>, Loaded> cache_;
 };
 
+/// The versions of all blobs of a chart: equal when nothing of it differs.
+using ChartState = std::vector<VersionId>;
+[[nodiscard]] ChartState state_of(const PageChart& chart);
+
 /// Members of a leaf by id; null when it has none of that id.
 [[nodiscard]] const PageChart* find_chart(const LeafPage& leaf, ChartId id);
 [[nodiscard]] const PageWire* find_wire(const LeafPage& leaf, WireId id);

@@ -41,6 +41,10 @@ class Rewriter {
     for (PageChart& chart : leaf.charts) {
       const auto recoded = edit_.charts.find(chart.id);
       if (recoded == edit_.charts.end()) continue;
+      for (const RecodedLayer& layer : recoded->second.layers)
+        for (LayerRef& ref : chart.layers)
+          if (ref.layer == layer.layer) ref.version = writer_.version();
+      if (recoded->second.blob.empty()) continue;
       chart.version = writer_.version();
       chart.table = recoded->second.entry.table;
       chart.box = recoded->second.entry.box;
@@ -64,7 +68,7 @@ std::vector<ChartId> find_conflicts(const PageIndex& tip, const EncodedEdit& edi
   std::vector<ChartId> conflicts;
   for (const auto& [id, recoded] : edit.charts) {
     const auto ref = tip.leaf_of(id);
-    if (!ref || find_chart(*ref->leaf, id)->version != recoded.base.version) conflicts.push_back(id);
+    if (!ref || state_of(*find_chart(*ref->leaf, id)) != state_of(recoded.base)) conflicts.push_back(id);
   }
   return conflicts;
 }

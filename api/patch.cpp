@@ -56,7 +56,8 @@ class CornerGroups {
 
 }  // namespace
 
-Patch::Patch(const Snapshot& snapshot, RegionMesh region) : base_(snapshot), region_(std::move(region)) {
+Patch::Patch(const Snapshot& snapshot, RegionMesh region)
+    : base_(snapshot), region_(std::move(region)), attributes_(region_.attributes) {
   mesh_.add_property(key_, "ramcdb:key");
   mesh_.add_property(chart_, "ramcdb:chart");
   mesh_.add_property(region_vertex_, "ramcdb:region_vertex");
@@ -93,6 +94,12 @@ Patch::Patch(const Snapshot& snapshot, RegionMesh region) : base_(snapshot), reg
   }
   for (std::uint32_t v = 0; v < region_.points.size(); ++v)
     if (!present[v]) add_vertex(v);
+}
+
+Attribute* Patch::attribute(std::string_view name) {
+  const auto it = std::find_if(attributes_.begin(), attributes_.end(),
+                               [&](const Attribute& attribute) { return attribute.info.name == name; });
+  return it == attributes_.end() ? nullptr : &*it;
 }
 
 bool Patch::on_outer_border(Mesh::VertexHandle v) const {

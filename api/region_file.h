@@ -10,17 +10,31 @@
 
 namespace ramcdb::detail {
 
-/// Writes a region as a mesh file: coordinates as 32-bit floats where these give back every lattice point, else as
-/// doubles. Returns the local origin that the file's coordinates are relative to: zero unless the format holds nothing
-/// but floats and those would not do, and `may_shift`; without it, that is refused.
-[[nodiscard]] Point write_region(const Snapshot& snapshot, const RegionMesh& region, const std::filesystem::path& file,
-                                 const FileOptions& options, bool with_ids, bool may_shift);
+struct WrittenRegion {
+  Point local_origin;  ///< that the file's coordinates are relative to
+  std::vector<mesh_file::Dropped> left_out;
+};
 
-/// The vertices that a file moved. The file holds the same faces as the region, in any order, with any vertex
-/// numbering, as a soup or with split vertices. Throws invalid_argument, with places, when its connectivity differs.
+/// Writes a region as a mesh file: coordinates as 32-bit floats where these give back every lattice point, else as
+/// doubles. The local origin is zero unless the format holds nothing but floats and those would not do, and
+/// `may_shift`; without it, that is refused.
+[[nodiscard]] WrittenRegion write_region(const Snapshot& snapshot, const RegionMesh& region,
+                                         const std::filesystem::path& file, const FileOptions& options, bool with_ids,
+                                         bool may_shift);
+
+/// What an edited file says about a region.
+struct FileEdit {
+  std::vector<VertexMove> moves;
+  /// As the region's, with the file's values where it has any; empty when it has none.
+  std::vector<Attribute> attributes;
+};
+
+/// Compares a file with the region that it was written from. It holds the same faces as the region (its polygons, or
+/// the triangles that these are kept as), in any order, with any vertex numbering, as a soup or with split vertices.
+/// Attributes are found by their names, or else by what they mean; those that the file lacks stay, and what it has in
+/// addition is no edit. Throws invalid_argument, with places, when its connectivity differs.
 /// \param trust_ids vertex ids in the file refer to this very region.
-[[nodiscard]] std::vector<VertexMove> moves_in_file(const RegionMesh& region, const Lattice& lattice,
-                                                    mesh_file::MeshData& file, const Point& local_origin,
-                                                    bool trust_ids);
+[[nodiscard]] FileEdit edit_in_file(const RegionMesh& region, const Lattice& lattice, const mesh_file::MeshData& file,
+                                    const Point& local_origin, bool trust_ids);
 
 }  // namespace ramcdb::detail

@@ -17,6 +17,7 @@ struct RegionPart {
 
 /// Joins charts into one mesh: vertices with equal keys become one. Charts ascending; vertices in the order in which
 /// the charts first name them.
-[[nodiscard]] RegionMesh load_region(std::span<const RegionPart> parts, unsigned threads, ReadCost* cost = nullptr);
+[[nodiscard]] RegionMesh load_region(std::span<const RegionPart> parts, unsigned threads, ReadCost* cost = nullptr,
+                                     bool with_layers = false);
 
 }  // namespace ramcdb::detail

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "api/region_faces.h"
 #include "api/region_file.h"
+#include "api/snapshot_impl.h"
 #include "ramcdb/error.h"
 
 namespace ramcdb::detail {
@@ -77,8 +79,8 @@ std::vector<FaceColor> chart_colors(const Snapshot& snapshot, const RegionMesh& 
 
 }  // namespace
 
-Point write_region(const Snapshot& snapshot, const RegionMesh& region, const std::filesystem::path& file,
-                   const FileOptions& options, bool with_ids, bool may_shift) {
+WrittenRegion write_region(const Snapshot& snapshot, const RegionMesh& region, const std::filesystem::path& file,
+                           const FileOptions& options, bool with_ids, bool may_shift) {
   const mesh_file::Format format = mesh_file::format_of(file);
   const Lattice& lattice = snapshot.lattice();
   if (options.paint != Paint::none && format != mesh_file::Format::ply && format != mesh_file::Format::off)
@@ -105,17 +107,23 @@ Point write_region(const Snapshot& snapshot, const RegionMesh& region, const std
   std::vector<std::uint64_t> ids;
   if (with_ids && format == mesh_file::Format::ply)
     for (const VertexKey& key : region.keys) ids.push_back(key.packed());
+  const RegionFaces faces(region);
   std::vector<FaceColor> face_colors;
   if (options.paint != Paint::none) {
     const auto colors = chart_colors(snapshot, region, options.paint);
-    for (const std::uint32_t chart : region.chart_of_face) face_colors.push_back(colors[chart]);
+    for (std::size_t f = 0; f < faces.count(); ++f)
+      face_colors.push_back(colors[region.chart_of_face[faces.corners(f).front() / 3]]);
   }
+  std::vector<Attribute> attributes;
+  for (const Attribute& attribute : region.attributes) attributes.push_back(faces.for_file(attribute));
   out.positions = positions;
-  out.faces = region.faces;
+  out.corners = faces.vertices();
+  out.face_sizes = faces.sizes();
+  out.attributes = attributes;
+  out.references = snapshot.impl().layers().references;
   out.vertex_ids = ids;
   out.face_colors = face_colors;
-  mesh_file::write_mesh(file, format, out, options.ascii);
-  return origin;
+  return {origin, mesh_file::write_mesh(file, format, out, options.ascii)};
 }
 
 }  // namespace ramcdb::detail

@@ -27,6 +27,7 @@ MeshBytes bytes_of(const Snapshot::Impl& at) {
       whole(record.chart_cost.header + record.chart_cost.connectivity + record.chart_cost.geometry) +
       record.charts * detail::kBlobOverhead;
   bytes.chart_headers = charts - bytes.connectivity - bytes.geometry;
+  bytes.attributes = record.layer_bytes;
   bytes.tables = record.table_bytes + at.record_bytes();
   bytes.payload = bytes.wire_net + bytes.wires + charts + bytes.attributes + bytes.tables;
   const auto usage = at.store().usage();
@@ -70,6 +71,11 @@ ChartSummary summary_of(const Snapshot::Impl& at, db::BlobReader& reader, const 
   summary.lo = at.record().lattice.position(chart.box.lo);
   summary.hi = at.record().lattice.position(chart.box.hi);
   summary.version = chart.version;
+  for (const LayerRef& layer : chart.layers) {
+    summary.version = std::max(summary.version, layer.version);
+    const db::BlobKey key{db::Kind::attribute, at.root().mesh, chart.id.value, layer.version, layer.layer};
+    summary.attribute_bytes += reader.get(key).size() + detail::kBlobOverhead;
+  }
   summary.bytes =
       reader.get({db::Kind::chart, at.root().mesh, chart.id.value, chart.version, 0}).size() + detail::kBlobOverhead;
   return summary;
@@ -90,6 +96,7 @@ MeshInfo Snapshot::info() const {
   info.charts = record.charts;
   info.wires = record.wires;
   info.corners = record.corners;
+  info.polygons = record.polygons;
   info.components = record.components;
   info.boundary_loops = record.boundary_loops;
   info.nonmanifold_edges = record.nonmanifold_edges;
@@ -105,6 +112,9 @@ MeshInfo Snapshot::info() const {
   const LatticeBox box = impl_->pages().box();
   info.lo = record.lattice.position(box.lo);
   info.hi = record.lattice.position(box.hi);
+  for (const detail::Layer& layer : impl_->layers().layers)
+    if (layer.coding != detail::LayerCoding::polygons) info.attributes.push_back({layer.info, layer.max_error()});
+  info.references = impl_->layers().references;
   info.bytes = bytes_of(*impl_);
   info.chart_faces = spread_of(chart_sizes(impl_->pages()));
   return info;
@@ -125,12 +135,24 @@ std::vector<ChartSummary> Snapshot::describe(const std::vector<ChartId>& charts)
   return summaries;
 }
 
+namespace {
+
+RegionMesh load(const Snapshot::Impl& at, std::vector<ChartId> charts, unsigned threads, ReadCost* cost,
+                bool with_layers) {
+  std::sort(charts.begin(), charts.end());
+  charts.erase(std::unique(charts.begin(), charts.end()), charts.end());
+  const detail::RegionPart part{&at, std::move(charts)};
+  return detail::load_region(std::span(&part, 1), threads, cost, with_layers);
+}
+
+}  // namespace
+
 RegionMesh Snapshot::read(const std::vector<ChartId>& charts, unsigned threads, ReadCost* cost) const {
-  std::vector<ChartId> ascending(charts);
-  std::sort(ascending.begin(), ascending.end());
-  ascending.erase(std::unique(ascending.begin(), ascending.end()), ascending.end());
-  const detail::RegionPart part{impl_.get(), std::move(ascending)};
-  return detail::load_region(std::span(&part, 1), threads, cost);
+  return load(*impl_, charts, threads, cost, false);
+}
+
+RegionMesh Snapshot::read_with_attributes(const std::vector<ChartId>& charts, unsigned threads, ReadCost* cost) const {
+  return load(*impl_, charts, threads, cost, true);
 }
 
 }  // namespace ramcdb

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "api/layers.h"
 #include "api/mesh_record.h"
 #include "api/page_index.h"
 #include "codec/tables.h"
@@ -23,6 +24,7 @@ class Snapshot::Impl {
   [[nodiscard]] const detail::MeshRecord& record() const { return record_; }
   [[nodiscard]] std::uint64_t record_bytes() const { return record_bytes_; }
   [[nodiscard]] const detail::PageIndex& pages() const { return pages_; }
+  [[nodiscard]] const detail::LayerTable& layers() const { return layers_; }
   /// The tables that a chart names. Read once, kept.
   [[nodiscard]] const codec::CoderTables& tables(TableId table) const;
 
@@ -32,6 +34,7 @@ class Snapshot::Impl {
   std::unique_ptr<db::Pin> pin_;
   std::uint64_t record_bytes_ = 0;
   detail::MeshRecord record_;
+  detail::LayerTable layers_;
   detail::PageIndex pages_;
   codec::CoderTables built_in_tables_;
 };

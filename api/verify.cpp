@@ -109,7 +109,7 @@ class Verifier {
     if (options_.quick) return check_presence(at, leaf);
     std::vector<const PageChart*> fresh;
     for (const PageChart& chart : leaf.charts)
-      if (charts_.insert({at.root().mesh, chart.id, chart.version}).second) fresh.push_back(&chart);
+      if (charts_.insert({at.root().mesh, chart.id, state_of(chart)}).second) fresh.push_back(&chart);
     std::vector<std::string> failures(fresh.size());
     parallel_for(fresh.size(), options_.threads, [&](std::size_t i) {
       try {
@@ -128,7 +128,7 @@ class Verifier {
 
   static void check_chart(const Snapshot::Impl& at, const PageChart& entry) {
     ChartLoader loader(at);
-    const auto loaded = loader.load(std::span(&entry.id, 1));
+    const auto loaded = loader.load(std::span(&entry.id, 1), 1, nullptr, true);
     LatticeBox box;
     for (const LatticePoint p : loaded.front().chart.positions) box.add(p);
     if (!(box == entry.box)) throw Error(Errc::corrupt, "the chart's box in its index page is not its exact box");
@@ -136,8 +136,11 @@ class Verifier {
 
   void check_presence(const Snapshot::Impl& at, const LeafPage& leaf) {
     const auto reader = store_->reader();
-    for (const PageChart& chart : leaf.charts)
+    for (const PageChart& chart : leaf.charts) {
       require(at, *reader, {db::Kind::chart, at.root().mesh, chart.id.value, chart.version, 0});
+      for (const LayerRef& layer : chart.layers)
+        require(at, *reader, {db::Kind::attribute, at.root().mesh, chart.id.value, layer.version, layer.layer});
+    }
     for (const PageWire& wire : leaf.wires)
       if (wire.inner_points) require(at, *reader, {db::Kind::wire, at.root().mesh, wire.id.value, wire.version, 0});
   }
@@ -177,7 +180,7 @@ class Verifier {
   VerifyReport report_;
   std::set<std::tuple<MeshId, PageId, VersionId, VersionId>> roots_;
   std::set<std::tuple<MeshId, PageId, VersionId>> pages_;
-  std::set<std::tuple<MeshId, ChartId, VersionId>> charts_;
+  std::set<std::tuple<MeshId, ChartId, ChartState>> charts_;
 };
 
 }  // namespace

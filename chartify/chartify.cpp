@@ -1,6 +1,9 @@
 #include "chartify/chartify.h"
 
+#include <algorithm>
+#include <numeric>
 #include <string>
+#include <tuple>
 
 #include "chartify/face_moves.h"
 #include "chartify/growth.h"
@@ -46,6 +49,32 @@ Partition paper_charts(const IndexedMesh& mesh, const std::vector<HalfEdge>& twi
   return partition;
 }
 
+/// Gives the faces of every polygon to the chart that has most of them, the first of equal ones.
+void keep_polygons_whole(std::span<const std::uint32_t> polygon_of_face, Partition& partition) {
+  if (polygon_of_face.empty()) return;
+  std::vector<std::uint32_t> faces(polygon_of_face.size());
+  std::iota(faces.begin(), faces.end(), 0U);
+  const auto key = [&](std::uint32_t f) { return std::tuple(polygon_of_face[f], partition.chart_of_face[f], f); };
+  std::sort(faces.begin(), faces.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  for (std::size_t i = 0, end; i < faces.size(); i = end) {
+    std::size_t best = i, most = 0;
+    for (end = i; end < faces.size() && polygon_of_face[faces[end]] == polygon_of_face[faces[i]];) {
+      const std::size_t begin = end;
+      while (end < faces.size() && polygon_of_face[faces[end]] == polygon_of_face[faces[i]] &&
+             partition.chart_of_face[faces[end]] == partition.chart_of_face[faces[begin]])
+        ++end;
+      if (end - begin > most) most = end - begin, best = begin;
+    }
+    const std::uint32_t chart = partition.chart_of_face[faces[best]];
+    for (std::size_t k = i; k < end; ++k) {
+      std::uint32_t& of_face = partition.chart_of_face[faces[k]];
+      --partition.sizes[of_face];
+      ++partition.sizes[chart];
+      of_face = chart;
+    }
+  }
+}
+
 }  // namespace
 
 Charts chartify(const IndexedMesh& mesh, const Options& options) {
@@ -58,6 +87,7 @@ Charts chartify(const IndexedMesh& mesh, const Options& options) {
   Partition partition = options.method == Method::paper ? paper_charts(mesh, twins, neighbours, components, options)
                                                         : refined_charts(mesh, twins, neighbours, components, options);
   pack_small_components(components, options.target_faces, partition);
+  keep_polygons_whole(options.polygon_of_face, partition);
   renumber(partition);
   Charts charts;
   charts.chart_of_isolated_vertex = place_isolated_vertices(mesh, options.target_faces, partition);

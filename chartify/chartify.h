@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "ramcdb/chart.h"
@@ -40,6 +41,8 @@ inline constexpr std::uint32_t kMostTargetFaces = 200'000;
 struct Options {
   std::uint32_t target_faces = 5000;  ///< 1 .. kMostTargetFaces
   Method method = Method::refined;
+  /// Per face a polygon that it is part of, 0, 1, ...: its faces end up in one chart. Empty: every face is alone.
+  std::span<const std::uint32_t> polygon_of_face = {};
   unsigned threads = 1;                                 ///< changes the time, never the result
   std::function<void(double done)> progress = nullptr;  ///< 0..1; may throw to cancel
 };

@@ -111,6 +111,7 @@ class Builder {
       Triangle t{};
       for (std::uint32_t i = 0; i < 3; ++i) t[i] = local_vertex(chart, 3 * f + i);
       chart.chart.faces.push_back(t);
+      chart.mesh_face.push_back(f);
     }
   }
 

@@ -25,6 +25,7 @@ struct NetChart {
   std::vector<std::vector<NetLoopStep>> loops;
   Chart chart;
   std::vector<std::uint32_t> mesh_vertex;  ///< local vertex of `chart` -> mesh vertex; border vertices may repeat one
+  std::vector<std::uint32_t> mesh_face;    ///< face of `chart` -> mesh face, whose corners come in the same order
 };
 
 /// The wire-net of a chartified mesh (paper, section 3): every chart with its loops, every wire once, every corner.

@@ -14,6 +14,7 @@ std::string edit_text(const ChangeReport& report) {
                      " of them on the region's border (charts outside follow)\n";
   if (report.vertices_added > 0) text += "vertices added    " + grouped(report.vertices_added) + "\n";
   if (report.vertices_removed > 0) text += "vertices removed  " + grouped(report.vertices_removed) + "\n";
+  if (report.values_changed > 0) text += "values changed    " + grouped(report.values_changed) + " (attributes)\n";
   return text + "displacement      largest " + model_units(report.max_displacement) + ", rms " +
          model_units(report.rms_displacement) + " (model units)\n";
 }
@@ -38,10 +39,10 @@ std::string change_text(const ChangeReport& report, const std::string& file) {
 
 std::string per_chart_text(const std::vector<ChangeReport::ChartChange>& changes) {
   if (changes.empty()) return "";
-  Table table({{"chart"}, {"vertices moved"}, {"largest move"}});
+  Table table({{"chart"}, {"vertices moved"}, {"largest move"}, {"values changed"}});
   for (const auto& change : changes)
-    table.add(
-        {std::to_string(change.chart.value), grouped(change.vertices_moved), model_units(change.max_displacement)});
+    table.add({std::to_string(change.chart.value), grouped(change.vertices_moved), model_units(change.max_displacement),
+               grouped(change.values_changed)});
   return table.text();
 }
 

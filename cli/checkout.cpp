@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "cli/attribute_text.h"
 #include "cli/failure.h"
 #include "cli/json_out.h"
 #include "cli/options.h"
@@ -28,7 +29,7 @@ std::string report_text(const CheckoutReport& report, const std::string& file) {
   return file + ": " + counted(report.charts, "chart") + " of " + version_text(report.revision) + ", " +
          counted(report.vertices, "vertex", "vertices") + ", " + counted(report.faces, "face") + "; read " +
          counted(report.blobs_read, "blob") + ", " + counted(report.bytes_read, "byte") + " in " +
-         duration(report.seconds) + "\n";
+         duration(report.seconds) + "\n" + left_out_text(report.left_out);
 }
 
 CheckoutReport checkout(const CheckoutOptions& options, const Region& region) {

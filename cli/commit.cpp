@@ -24,9 +24,12 @@ std::string report_text(const CommitReport& report) {
   if (report.nothing_changed) return "nothing changed: no version written\n";
   return version_text(report.revision) + " after " + version_text(report.parent) + ": " +
          counted(report.vertices_moved, "vertex", "vertices") + " moved in " + counted(report.charts_touched, "chart") +
-         ", by at most " + model_units(report.max_displacement) + " (model units)\nre-encoded " +
-         counted(report.charts_reencoded, "chart") + " and " + counted(report.wires_reencoded, "wire") + ", wrote " +
-         counted(report.bytes_written, "byte") + " in " + duration(report.seconds) + "\n";
+         ", by at most " + model_units(report.max_displacement) + " (model units)" +
+         (report.values_changed ? ", " + counted(report.values_changed, "value") + " of attributes changed" : "") +
+         "\nre-encoded " + counted(report.charts_reencoded, "chart") +
+         (report.layers_reencoded ? ", " + counted(report.layers_reencoded, "attribute blob") : "") + " and " +
+         counted(report.wires_reencoded, "wire") + ", wrote " + counted(report.bytes_written, "byte") + " in " +
+         duration(report.seconds) + "\n";
 }
 
 CommitReport commit(const CommitCommand& command) {

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "cli/attribute_text.h"
 #include "cli/failure.h"
 #include "cli/json_out.h"
 #include "cli/options.h"
@@ -25,7 +26,7 @@ struct ExportOptions {
 std::string export_text(const CheckoutReport& report, const std::string& file) {
   return file + ": " + version_text(report.revision) + ", " + counted(report.vertices, "vertex", "vertices") + ", " +
          counted(report.faces, "face") + "; read " + counted(report.bytes_read, "byte") + " in " +
-         duration(report.seconds) + "\n";
+         duration(report.seconds) + "\n" + left_out_text(report.left_out);
 }
 
 CheckoutReport export_mesh(const ExportOptions& options) {

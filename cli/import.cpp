@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "cli/attribute_text.h"
 #include "cli/failure.h"
 #include "cli/json_out.h"
 #include "cli/options.h"
@@ -41,8 +42,12 @@ std::string found_text(const MeshInfo& info) {
 
 std::string changed_text(const ImportReport& report) {
   std::string text;
-  if (report.polygons_triangulated > 0)
-    text += "changed  " + counted(report.polygons_triangulated, "polygon") + " cut into triangles\n";
+  if (report.polygons > 0)
+    text += "kept     " + counted(report.polygons, "polygon") + ", coded as triangles" +
+            (report.polygons_as_fans ? ", " + grouped(report.polygons_as_fans) + " of them as fans" : "") + "\n";
+  for (const MeshInfo::Layer& layer : report.info.attributes) text += "kept     " + attribute_text(layer) + "\n";
+  for (const std::string& reference : report.info.references)
+    text += "kept     reference \"" + one_line(reference) + "\", not the file itself\n";
   if (report.vertices_welded > 0)
     text += "changed  " + counted(report.vertices_welded, "corner") + " at equal positions joined\n";
   for (const auto& dropped : report.dropped)
@@ -145,6 +150,8 @@ void setup_import(CLI::App& app, Run& run) {
       ->type_name("NAME");
   add_lattice_options(verb, *command);
   add_chart_options(verb, *command);
+  verb.add_flag("--lossless-attributes", command->options.lossless_attributes,
+                "Keep colours, normals and texture coordinates that are floats bit by bit");
   add_message(verb, command->options.message, false);
   add_author(verb, command->options.author);
   add_threads(verb, command->options.threads);

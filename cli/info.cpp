@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "cli/attribute_text.h"
 #include "cli/failure.h"
 #include "cli/json_out.h"
 #include "cli/options.h"
@@ -24,7 +25,8 @@ std::string shape_text(const MeshInfo& info) {
   table.add({"vertices", grouped(info.vertices)});
   table.add({"  isolated", grouped(info.isolated_vertices)});
   table.add({"  non-manifold", grouped(info.nonmanifold_vertices)});
-  table.add({"faces", grouped(info.faces)});
+  table.add({info.polygons ? "faces (triangles)" : "faces", grouped(info.faces)});
+  if (info.polygons) table.add({"  polygons they make up", grouped(info.polygons)});
   table.add({"  degenerate", grouped(info.degenerate_faces)});
   table.add({"  duplicate", grouped(info.duplicate_faces)});
   table.add({"non-manifold edges", grouped(info.nonmanifold_edges)});
@@ -49,6 +51,13 @@ std::string place_text(const MeshInfo& info) {
          ")\nprofile      " + one_line(info.profile) + "\n";
 }
 
+std::string attributes_text(const MeshInfo& info) {
+  std::string text;
+  for (const MeshInfo::Layer& layer : info.attributes) text += "attribute    " + attribute_text(layer) + "\n";
+  for (const std::string& reference : info.references) text += "reference    " + one_line(reference) + "\n";
+  return text;
+}
+
 std::string table_of_sizes(const MeshInfo& info) {
   Table table({{"kind", Table::Align::left}, {"bytes"}, {"bits/vertex"}});
   const auto row = [&](const char* kind, std::uint64_t bytes) {
@@ -69,7 +78,9 @@ std::string table_of_sizes(const MeshInfo& info) {
 int run_info(const InfoOptions& options) {
   const Repository repository = Repository::open(options.folder);
   const MeshInfo info = repository.snapshot(options.which.mesh, options.which.at).info();
-  say(options.mode.json ? info_json(info) : shape_text(info) + "\n" + place_text(info) + "\n" + table_of_sizes(info));
+  say(options.mode.json
+          ? info_json(info)
+          : shape_text(info) + "\n" + place_text(info) + attributes_text(info) + "\n" + table_of_sizes(info));
   return kDone;
 }
 

@@ -1,4 +1,5 @@
 #include "cli/json_out.h"
+#include "cli/attribute_text.h"
 
 #include <nlohmann/json.hpp>
 
@@ -38,6 +39,25 @@ Json of(const Lattice& lattice, bool lossless) {
   return {{"step", lattice.step}, {"origin", of(lattice.origin)}, {"lossless", lossless}};
 }
 
+Json of(const std::vector<MeshInfo::Layer>& attributes) {
+  Json json = Json::array();
+  for (const MeshInfo::Layer& layer : attributes)
+    json.push_back({{"name", layer.info.name},
+                    {"of", name_of(layer.info.of)},
+                    {"type", name_of(layer.info.type)},
+                    {"components", layer.info.components},
+                    {"meaning", name_of(layer.info.meaning)},
+                    {"names", layer.info.names.size()},
+                    {"max_error", layer.max_error}});
+  return json;
+}
+
+Json of(const std::vector<ImportReport::Dropped>& dropped) {
+  Json json = Json::array();
+  for (const auto& d : dropped) json.push_back({{"what", d.what}, {"count", d.count}});
+  return json;
+}
+
 Json of(const MeshInfo& info) {
   return {{"mesh", info.mesh},
           {"revision", info.revision.value},
@@ -62,6 +82,9 @@ Json of(const MeshInfo& info) {
             {"max", info.chart_faces.max}}},
           {"nonmanifold_vertices", info.nonmanifold_vertices},
           {"isolated_vertices", info.isolated_vertices},
+          {"polygons", info.polygons},
+          {"attributes", of(info.attributes)},
+          {"references", info.references},
           {"degenerate_faces", info.degenerate_faces},
           {"duplicate_faces", info.duplicate_faces},
           {"inconsistent_edges", info.inconsistent_edges},
@@ -77,6 +100,7 @@ Json of(const ChartSummary& chart) {
           {"border_vertices", chart.border_vertices},
           {"box", {{"lo", of(chart.lo)}, {"hi", of(chart.hi)}}},
           {"bytes", chart.bytes},
+          {"attribute_bytes", chart.attribute_bytes},
           {"neighbours", of(chart.neighbours)},
           {"version", chart.version.value}};
 }
@@ -91,6 +115,7 @@ Json of(const ChangeReport& report) {
           {"max_displacement", report.max_displacement},
           {"conflicts", of(report.conflicts)},
           {"clean", report.clean()},
+          {"values_changed", report.values_changed},
           {"charts", of(report.charts_touched)},
           {"border_vertices_moved", report.border_vertices_moved},
           {"rms_displacement", report.rms_displacement},
@@ -102,6 +127,7 @@ Json of(const std::vector<ChangeReport::ChartChange>& changes) {
   for (const auto& change : changes)
     json.push_back({{"chart", change.chart.value},
                     {"vertices_moved", change.vertices_moved},
+                    {"values_changed", change.values_changed},
                     {"max_displacement", change.max_displacement}});
   return json;
 }
@@ -134,10 +160,8 @@ std::string init_json(const std::filesystem::path& folder, const std::string& id
 
 std::string import_json(const ImportReport& report) {
   Json json = of(report.info);
-  json["dropped"] = Json::array();
-  for (const auto& dropped : report.dropped)
-    json["dropped"].push_back({{"what", dropped.what}, {"count", dropped.count}});
-  json["polygons_triangulated"] = report.polygons_triangulated;
+  json["dropped"] = of(report.dropped);
+  json["polygons_as_fans"] = report.polygons_as_fans;
   json["vertices_welded"] = report.vertices_welded;
   json["measured_error"] = report.measured_error;
   json["seconds"] = report.seconds;
@@ -172,7 +196,8 @@ std::string checkout_json(const CheckoutReport& report) {
                   {"bytes_read", report.bytes_read},
                   {"blobs_read", report.blobs_read},
                   {"seconds", report.seconds},
-                  {"pages_read", report.pages_read}});
+                  {"pages_read", report.pages_read},
+                  {"left_out", of(report.left_out)}});
 }
 
 std::string status_json(const ChangeReport& report) { return printed(of(report)); }
@@ -210,6 +235,8 @@ std::string commit_json(const CommitReport& report) {
                   {"max_displacement", report.max_displacement},
                   {"bytes_written", report.bytes_written},
                   {"seconds", report.seconds},
+                  {"values_changed", report.values_changed},
+                  {"layers_reencoded", report.layers_reencoded},
                   {"nothing_changed", report.nothing_changed},
                   {"conflicts", of(report.conflicts)}});
 }

@@ -104,8 +104,8 @@ ChartHeader header_of(const Chart& chart, std::uint32_t border, const LatticeBox
 }
 
 /// Puts the pieces of a coded chart together; `payload` is what the coder wrote.
-EncodedChart assemble(ChartHeader header, Chart decoded, std::vector<std::uint32_t> source_vertex,
-                      const Buffer& payload, const CoderTables& tables, const LatticeBox& range) {
+EncodedChart assemble(ChartHeader header, Chart decoded, const Buffer& payload, const CoderTables& tables,
+                      const LatticeBox& range) {
   header.check = chart_check(header, decoded, range, tables);
   EncodedChart encoded;
   put_chart_header(encoded.blob, header);
@@ -113,7 +113,6 @@ EncodedChart assemble(ChartHeader header, Chart decoded, std::vector<std::uint32
   encoded.coding = header.coding;
   encoded.expanded_range = header.own_box;
   encoded.decoded = std::move(decoded);
-  encoded.source_vertex = std::move(source_vertex);
   return encoded;
 }
 
@@ -139,8 +138,9 @@ std::optional<EncodedChart> encode_densely(const Chart& chart, ChartHeader heade
       encode_dense(chart, dense_context(std::span(chart.positions).first(border), chart.loop_sizes, header, tables));
   if (!stream) return std::nullopt;
   Chart decoded{chart.loop_sizes, std::move(stream->coded.positions), std::move(stream->coded.faces)};
-  EncodedChart encoded =
-      assemble(header, std::move(decoded), std::move(stream->source_vertex), stream->bytes, tables, range);
+  EncodedChart encoded = assemble(header, std::move(decoded), stream->bytes, tables, range);
+  encoded.source_vertex = std::move(stream->source_vertex);
+  encoded.source_corner = std::move(stream->source_corner);
   if (!decodes_to_itself(encoded, border, tables, range)) return std::nullopt;
   return encoded;
 }
@@ -149,7 +149,9 @@ EncodedChart encode_rawly(const Chart& chart, ChartHeader header, const CoderTab
   header.coding = ChartCoding::raw;
   RawChart raw = encode_raw(chart, header.box.lo);
   Chart decoded{chart.loop_sizes, std::move(raw.positions), std::move(raw.faces)};
-  EncodedChart encoded = assemble(header, std::move(decoded), std::move(raw.source_vertex), raw.bytes, tables, range);
+  EncodedChart encoded = assemble(header, std::move(decoded), raw.bytes, tables, range);
+  encoded.source_vertex = std::move(raw.source_vertex);
+  encoded.source_corner = std::move(raw.source_corner);
   if (!decodes_to_itself(encoded, chart.border_count(), tables, range))
     throw Error(Errc::invalid_argument, "a chart cannot be coded", {}, "report this: it is a bug");
   return encoded;

@@ -34,6 +34,8 @@ struct EncodedChart {
   Chart decoded;
   /// decoded vertex -> vertex of the chart passed in; the identity on border vertices.
   std::vector<std::uint32_t> source_vertex;
+  /// decoded face -> the corner (3 * face + 0..2) of the chart passed in that became its first one.
+  std::vector<std::uint32_t> source_corner;
 };
 
 /// Codes a chart: its inner vertices and its faces. Border positions and loop sizes are context, known from the wires;

@@ -19,7 +19,8 @@ DenseChart result_of(Walk& walk, std::uint64_t total_cost) {
 }
 
 /// Whether every face of `chart` was coded, once, with its own corners.
-bool coded_faces_match(const Chart& chart, const DenseStream& stream, const std::vector<std::uint32_t>& face_edges) {
+bool coded_faces_match(const Chart& chart, const DenseStream& stream) {
+  const std::vector<std::uint32_t>& face_edges = stream.source_corner;
   if (face_edges.size() != chart.faces.size() || stream.coded.faces.size() != chart.faces.size()) return false;
   std::vector<bool> coded(chart.faces.size(), false);
   for (std::size_t f = 0; f < face_edges.size(); ++f) {
@@ -59,8 +60,8 @@ std::optional<DenseStream> encode_dense(const Chart& chart, const DenseContext& 
   stream.coded = result_of(walk, encoder.position() - start);
   stream.bytes = encoder.finish();
   stream.source_vertex = guide.source_vertices();
-  if (!coded_vertices_match(chart, stream) || !coded_faces_match(chart, stream, guide.source_faces()))
-    return std::nullopt;
+  stream.source_corner = guide.source_faces();
+  if (!coded_vertices_match(chart, stream) || !coded_faces_match(chart, stream)) return std::nullopt;
   return stream;
 }
 

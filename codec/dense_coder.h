@@ -18,6 +18,7 @@ struct DenseStream {
   Buffer bytes;
   DenseChart coded;
   std::vector<std::uint32_t> source_vertex;  ///< of coded -> of the chart that was encoded
+  std::vector<std::uint32_t> source_corner;  ///< face of coded -> corner of the chart that was encoded
 };
 
 /// Codes inner vertices and faces of a chart. Nothing when its faces are not a manifold surface that ends at its loops.

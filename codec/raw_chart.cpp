@@ -16,15 +16,25 @@ std::vector<std::uint32_t> canonical_vertices(const Chart& chart) {
   return order;
 }
 
-std::vector<Triangle> canonical_faces(const Chart& chart, const std::vector<std::uint32_t>& order) {
+/// A face in canonical form; equal ones stay in their order.
+struct SourcedFace {
+  Triangle face;
+  std::uint32_t corner = 0;  ///< of the chart: its first one
+  friend auto operator<=>(const SourcedFace&, const SourcedFace&) = default;
+};
+
+std::vector<SourcedFace> canonical_faces(const Chart& chart, const std::vector<std::uint32_t>& order) {
   std::vector<std::uint32_t> number(order.size());
   for (std::uint32_t v = 0; v < order.size(); ++v) number[order[v]] = v;
-  std::vector<Triangle> faces;
+  std::vector<SourcedFace> faces;
   faces.reserve(chart.faces.size());
-  for (const Triangle& face : chart.faces) {
+  for (std::uint32_t f = 0; f < chart.faces.size(); ++f) {
+    const Triangle& face = chart.faces[f];
     Triangle renumbered{number[face[0]], number[face[1]], number[face[2]]};
-    std::rotate(renumbered.begin(), std::min_element(renumbered.begin(), renumbered.end()), renumbered.end());
-    faces.push_back(renumbered);
+    const auto smallest = std::min_element(renumbered.begin(), renumbered.end());
+    const auto turn = static_cast<std::uint32_t>(smallest - renumbered.begin());
+    std::rotate(renumbered.begin(), smallest, renumbered.end());
+    faces.push_back({renumbered, 3 * f + turn});
   }
   std::sort(faces.begin(), faces.end());
   return faces;
@@ -44,7 +54,10 @@ std::uint32_t take_step(ByteReader& reader, std::uint32_t from, std::size_t limi
 RawChart encode_raw(const Chart& chart, LatticePoint box_low) {
   RawChart raw;
   raw.source_vertex = canonical_vertices(chart);
-  raw.faces = canonical_faces(chart, raw.source_vertex);
+  for (const SourcedFace& face : canonical_faces(chart, raw.source_vertex)) {
+    raw.faces.push_back(face.face);
+    raw.source_corner.push_back(face.corner);
+  }
   for (const std::uint32_t v : raw.source_vertex) raw.positions.push_back(chart.positions[v]);
 
   LatticePoint before = box_low;

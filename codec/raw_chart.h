@@ -14,6 +14,7 @@ struct RawChart {
   std::vector<LatticePoint> positions;  ///< border first, inner ones by position
   std::vector<Triangle> faces;          ///< smallest corner first, ascending
   std::vector<std::uint32_t> source_vertex;
+  std::vector<std::uint32_t> source_corner;  ///< per face the corner of the chart that became its first one
 };
 
 /// Codes inner vertices and faces of any chart, compactly only in so far as neighbours in order are near:

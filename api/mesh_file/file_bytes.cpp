@@ -132,12 +132,17 @@ std::string_view TextScanner::word_anywhere() {
 }
 
 double TextScanner::parse_number(std::string_view text, std::string_view what) {
+  const double value = parse_any_number(text, what);
+  if (!std::isfinite(value)) throw bad(fmt::format("{} is not finite: '{}'", what, shown(text)));
+  return value;
+}
+
+double TextScanner::parse_any_number(std::string_view text, std::string_view what) const {
   if (text.empty()) throw bad(fmt::format("{} is missing", what));
   double value = 0;
   const auto [end, error] = fast_float::from_chars(behind_plus(text), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size())
     throw bad(fmt::format("{} is no number: '{}'", what, shown(text)));
-  if (!std::isfinite(value)) throw bad(fmt::format("{} is not finite: '{}'", what, shown(text)));
   return value;
 }
 
@@ -150,6 +155,7 @@ std::int64_t TextScanner::parse_integer(std::string_view text, std::string_view 
   return value;
 }
 
+double TextScanner::any_number_anywhere(std::string_view what) { return parse_any_number(word_anywhere(), what); }
 double TextScanner::number(std::string_view what) { return parse_number(word(), what); }
 double TextScanner::number_anywhere(std::string_view what) { return parse_number(word_anywhere(), what); }
 std::int64_t TextScanner::integer(std::string_view what) { return parse_integer(word(), what); }

@@ -70,6 +70,8 @@ class TextScanner {
   /// The next word as a number. Throws with the place.
   double number(std::string_view what);
   double number_anywhere(std::string_view what);
+  /// One that may be infinite or none at all (nan).
+  double any_number_anywhere(std::string_view what);
   std::int64_t integer(std::string_view what);
   std::int64_t integer_anywhere(std::string_view what);
 
@@ -82,6 +84,7 @@ class TextScanner {
   char comment = 0;
 
   double parse_number(std::string_view word, std::string_view what);
+  double parse_any_number(std::string_view word, std::string_view what) const;
   std::int64_t parse_integer(std::string_view word, std::string_view what) const;
 
  private:
@@ -105,7 +108,7 @@ class DroppedCounter {
   void hand_over(MeshData& mesh);
 
  private:
-  std::vector<MeshData::Dropped> dropped_;
+  std::vector<Dropped> dropped_;
 };
 
 }  // namespace ramcdb::mesh_file

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "ramcdb/attributes.h"
 #include "ramcdb/geometry.h"
 
 /// Ordinary mesh files, as they are: nothing is repaired, and what is not kept is named.
@@ -20,6 +21,12 @@ enum class Format { ply, obj, off, stl };
 /// The number type of the coordinates that are written.
 enum class Scalar { float32, float64 };
 
+/// What is not kept.
+struct Dropped {
+  std::string what;         ///< such as "element 'camera'"
+  std::uint64_t count = 0;  ///< how many values, faces or lines
+};
+
 struct MeshData {
   /// As the file has them. A decimal number is taken as the nearest double, never rounded to what some program may have
   /// printed it from.
@@ -27,13 +34,11 @@ struct MeshData {
   std::vector<std::uint32_t> corners;     ///< vertex indices, face after face
   std::vector<std::uint32_t> face_sizes;  ///< corners per face; empty when all faces are triangles
   std::vector<std::uint64_t> vertex_ids;  ///< per vertex, from a file that write_mesh gave ids to; else empty
+  std::vector<Attribute> attributes;      ///< corners count as in `corners`
+  std::vector<std::string> references;    ///< other files that it names: "mtllib a.mtl", "texture skin.png"
   bool soup = false;                      ///< every face has vertices of its own (STL)
 
-  struct Dropped {
-    std::string what;         ///< such as "vertex property 'confidence' (float)"
-    std::uint64_t count = 0;  ///< how many values, faces or lines
-  };
-  std::vector<Dropped> dropped;  ///< what the file holds beside the above; `triangulate` adds to it
+  std::vector<Dropped> dropped;  ///< what the file holds beside the above
 
   [[nodiscard]] std::size_t face_count() const { return face_sizes.empty() ? corners.size() / 3 : face_sizes.size(); }
 };
@@ -43,13 +48,20 @@ struct MeshData {
 /// coordinates that are not finite, or no vertex at all.
 [[nodiscard]] MeshData read_mesh(const std::filesystem::path& file, const std::function<void(double)>& progress = {});
 
-/// Makes vertices at equal positions one (-0 equals 0); of their ids the first stays.
+/// Makes vertices at equal positions one (-0 equals 0); of their ids and attributes the first one's stay.
 void weld_exact(MeshData& mesh);
 
-/// Cuts faces with more than three corners into triangles, by ear clipping where they are not convex. Positions and
-/// vertices stay. Polygons that take too long become fans, whose triangles may overlap: `dropped` counts them. Returns
-/// how many faces were cut.
-std::uint64_t triangulate(MeshData& mesh);
+/// Triangles of a mesh's faces, face after face.
+struct Triangulation {
+  std::vector<Triangle> corners;    ///< per triangle three positions in `MeshData::corners`
+  std::vector<std::uint32_t> face;  ///< per triangle the face that it was cut from, ascending
+  std::uint64_t polygons = 0;       ///< faces with more than three corners
+  std::uint64_t fans = 0;           ///< of them, those that took too long to cut well: fans, which may overlap
+};
+
+/// Cuts faces with more than three corners by ear clipping where they are not convex. A face with n corners gives n - 2
+/// triangles, which hang together along its diagonals.
+[[nodiscard]] Triangulation triangulate(const MeshData& mesh);
 
 struct FaceColor {
   std::uint8_t r = 0, g = 0, b = 0;
@@ -58,17 +70,21 @@ struct FaceColor {
 /// A mesh to write; the spans must outlive the call.
 struct MeshOutput {
   std::span<const Point> positions;
-  std::span<const Triangle> faces;
+  std::span<const std::uint32_t> corners;     ///< vertex indices, face after face
+  std::span<const std::uint32_t> face_sizes;  ///< corners per face; empty when all faces are triangles
   Scalar scalar = Scalar::float32;
   std::span<const std::uint64_t> vertex_ids;  ///< PLY only; may be empty
   std::span<const FaceColor> face_colors;     ///< PLY and OFF; may be empty
+  std::span<const Attribute> attributes;      ///< what the format cannot hold is left out and counted in the result
+  std::span<const std::string> references;    ///< OBJ and PLY
 };
 
 /// Writes beside the file and renames into place, so that a failure leaves what was there. Text numbers are the
 /// shortest that read back as the same number of the scalar. STL is binary; PLY is binary
 /// little-endian unless `ascii`. Throws disk_full, storage, and invalid_argument for coordinates that are not finite or
-/// too large for the scalar (STL: for float32), faces that name no vertex, ids or colours that are not one each; then
-/// nothing was touched.
-void write_mesh(const std::filesystem::path& file, Format format, const MeshOutput& mesh, bool ascii = false);
+/// too large for the scalar (STL: for float32), faces that name no vertex, ids, colours or attributes that are not one
+/// each; then nothing was touched. Returns what the format could not hold, by name.
+std::vector<Dropped> write_mesh(const std::filesystem::path& file, Format format, const MeshOutput& mesh,
+                                bool ascii = false);
 
 }  // namespace ramcdb::mesh_file

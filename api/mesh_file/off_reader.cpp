@@ -5,7 +5,9 @@
 #include "api/mesh_file/file_bytes.h"
 
 /// OFF and its prefixes: [ST][C][N][4][n]OFF, then counts of vertices, faces and edges, then a line per vertex and per
-/// face. What follows the three coordinates, and the corners of a face, is dropped by name.
+/// face. Behind the three coordinates stand normal, colour and texture coordinates, as the prefixes say, behind the
+/// corners of a face its colour: 3 or 4 numbers, whole ones to 255 or others to 1. What else there is, is dropped by
+/// name, and so are colours that only some have.
 namespace ramcdb::mesh_file {
 namespace {
 
@@ -31,6 +33,58 @@ Layout parse_keyword(const TextScanner& scan, std::string_view keyword) {
   return layout;
 }
 
+/// Values of vertices or faces that have equally many numbers, gathered one after another.
+class Column {
+ public:
+  void begin() { size_ = 0; }
+  void add(std::string_view word, double number) {
+    values_.push_back(number);
+    whole_ &= word.find_first_not_of("0123456789") == std::string_view::npos && number <= 255;
+    ++size_;
+  }
+  /// Values of another length than the first one's are not kept at all.
+  void end() {
+    if (size_ == 0) return;
+    ++count_;
+    if (components_ == 0) components_ = size_;
+    even_ &= size_ == components_;
+  }
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+
+  /// False when not every one of `expected` has one.
+  bool hand_over(MeshData& mesh, std::string name, AttributeOf of, Meaning meaning, std::size_t expected) {
+    const bool is_color = meaning == Meaning::color;
+    if (count_ != expected || !even_ || (is_color ? components_ < 3 || components_ > 4 : components_ > 4)) return false;
+    if (is_color && components_ == 4) drop_full_alpha();
+    Attribute attribute;
+    attribute.info.name = std::move(name);
+    attribute.info.of = of;
+    attribute.info.type = is_color && whole_ ? NumberType::uint8 : NumberType::float64;
+    attribute.info.components = static_cast<std::uint8_t>(components_);
+    attribute.info.meaning = meaning;
+    attribute.values = std::move(values_);
+    mesh.attributes.push_back(std::move(attribute));
+    return true;
+  }
+
+ private:
+  /// An alpha that is 255 (or 1) everywhere is the format's, not the mesh's.
+  void drop_full_alpha() {
+    const double full = whole_ ? 255 : 1;
+    for (std::size_t i = 3; i < values_.size(); i += 4)
+      if (values_[i] != full) return;
+    for (std::size_t i = 0; 4 * i < values_.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k) values_[3 * i + k] = values_[4 * i + k];
+    values_.resize(values_.size() / 4 * 3);
+    components_ = 3;
+  }
+
+  std::vector<double> values_;
+  std::size_t components_ = 0, size_ = 0;
+  std::uint64_t count_ = 0;
+  bool whole_ = true, even_ = true;
+};
+
 class OffReader {
  public:
   OffReader(const FileBytes& file, MeshData& mesh, const Progress& progress)
@@ -54,6 +108,15 @@ class OffReader {
     mesh_.corners.reserve(3 * faces);
     for (std::size_t f = 0; f < faces; ++f) read_face(vertices);
     if (!scan_.word_anywhere().empty()) dropped_.add("text behind the last face");
+    const auto keep = [&](Column& column, const char* name, AttributeOf of, Meaning meaning, std::size_t expected,
+                          const char* what) {
+      if (column.count() && !column.hand_over(mesh_, name, of, meaning, expected)) dropped_.add(what, column.count());
+    };
+    keep(normals_, "normal", AttributeOf::vertex, Meaning::normal, vertices, "vertex normals");
+    keep(colors_, "color", AttributeOf::vertex, Meaning::color, vertices, "vertex colours");
+    keep(textures_, "texture", AttributeOf::vertex, Meaning::texture, vertices, "texture coordinates");
+    keep(face_colors_, colors_.count() ? "face.color" : "color", AttributeOf::face, Meaning::color, faces,
+         "face colours");
     dropped_.hand_over(mesh_);
   }
 
@@ -69,13 +132,24 @@ class OffReader {
     Point p;
     for (int a = 0; a < 3; ++a) p[a] = scan_.number_anywhere("a coordinate");
     mesh_.positions.push_back(p);
-    std::size_t extra = 0;
-    while (!scan_.word().empty()) ++extra;
-    if (extra == 0) return;
-    if (layout.normal) dropped_.add("vertex normals");
-    if (layout.color) dropped_.add("vertex colours");
-    if (layout.texture) dropped_.add("texture coordinates");
-    if (!layout.normal && !layout.color && !layout.texture) dropped_.add("further numbers behind vertices");
+    std::string_view word = scan_.word();
+    if (word.empty()) return;
+    if (layout.normal) word = read_numbers(normals_, word, 3);
+    if (layout.color) word = read_numbers(colors_, word, layout.texture ? 4 : 99);
+    if (layout.texture) word = read_numbers(textures_, word, 99);
+    if (word.empty()) return;
+    while (!scan_.word().empty()) {
+    }
+    dropped_.add("further numbers behind vertices");
+  }
+
+  /// Up to `most` numbers of the line, from `word` on; returns the word behind them.
+  std::string_view read_numbers(Column& column, std::string_view word, std::size_t most) {
+    column.begin();
+    for (std::size_t n = 0; n < most && !word.empty(); ++n, word = scan_.word())
+      column.add(word, scan_.parse_number(word, "a number behind a vertex or face"));
+    column.end();
+    return word;
   }
 
   void read_face(std::size_t vertices) {
@@ -89,15 +163,15 @@ class OffReader {
       mesh_.corners.push_back(static_cast<std::uint32_t>(v));
     }
     end_face(mesh_, static_cast<std::uint32_t>(corners));
-    std::size_t extra = 0;
-    while (!scan_.word().empty()) ++extra;
-    if (extra) dropped_.add("face colours");
+    const std::string_view word = scan_.word();
+    if (!word.empty()) (void)read_numbers(face_colors_, word, 99);
   }
 
   TextScanner scan_;
   MeshData& mesh_;
   std::size_t size_;
   DroppedCounter dropped_;
+  Column normals_, colors_, textures_, face_colors_;
 };
 
 }  // namespace

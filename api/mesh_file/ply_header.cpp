@@ -66,9 +66,19 @@ class HeaderReader {
       header_.elements.push_back(std::move(element));
     } else if (keyword == "property") {
       read_property();
-    } else if (!keyword.empty() && keyword != "comment" && keyword != "obj_info") {
+    } else if (keyword == "comment") {
+      read_comment();
+    } else if (!keyword.empty() && keyword != "obj_info") {
       throw scan_.bad(fmt::format("unknown header line '{}'", shown(keyword)));
     }
+  }
+
+  /// "comment TextureFile skin.png", as MeshLab writes it.
+  void read_comment() {
+    if (scan_.word() != "TextureFile") return;
+    std::string name;
+    for (std::string_view word; !(word = scan_.word()).empty();) name.append(name.empty() ? "" : " ").append(word);
+    if (!name.empty()) header_.textures.push_back(std::move(name));
   }
 
   void read_format(std::string_view name) {

@@ -46,6 +46,7 @@ enum class Encoding { ascii, little, big };
 struct Header {
   std::optional<Encoding> encoding;
   std::vector<Element> elements;
+  std::vector<std::string> textures;  ///< files that comments name
   std::size_t size = 0, lines = 0;
 
   [[nodiscard]] const Element* find(std::string_view name) const {

@@ -1,9 +1,14 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
+
+#include "api/mesh_file/ply_attributes.h"
 #include "api/mesh_file/ply_values.h"
 
 /// PLY, text and both binary byte orders. Kept: x, y, z of the element "vertex"; the list vertex_indices (or
-/// vertex_index) of "face"; our own vertex ids. Everything else is skipped by its size and named.
+/// vertex_index) of "face"; our own vertex ids; all other numbers of vertices and faces and the list texcoord of faces,
+/// as attributes. Everything else is skipped by its size and named.
 namespace ramcdb::mesh_file {
 namespace {
 
@@ -25,6 +30,8 @@ class BodyReader {
 
   void run() {
     for (const Element& element : header_.elements) {
+      columns_.assign(element.properties.size(), {});
+      if (element.name == "vertex" || element.name == "face") columns_ = plan_attributes(element, mesh_.attributes);
       name_dropped(element);
       if (element.name == "vertex")
         read_vertices(element);
@@ -32,6 +39,7 @@ class BodyReader {
         read_others(element);
     }
     if (!values_.at_end()) dropped_.add("bytes behind the last element");
+    for (const std::string& texture : header_.textures) mesh_.references.push_back("texture " + texture);
     dropped_.hand_over(mesh_);
   }
 
@@ -42,10 +50,14 @@ class BodyReader {
       return;
     }
     for (const Property& p : element.properties)
-      if (p.role == Role::none)
+      if (p.role == Role::none && column_of(element, p).attribute == Column::kNone)
         dropped_.add(fmt::format("{} property '{}' ({}{})", element.name, shown(p.name), p.count_type ? "list of " : "",
                                  p.type_name),
                      element.count);
+  }
+
+  [[nodiscard]] const Column& column_of(const Element& element, const Property& p) const {
+    return columns_[static_cast<std::size_t>(&p - element.properties.data())];
   }
 
   void read_vertices(const Element& element) {
@@ -65,10 +77,23 @@ class BodyReader {
         else if (p.role < Role::indices)
           values[static_cast<std::size_t>(p.role)] = id_half(p.type);
         else
-          skip(p);
+          read_other(p, column_of(element, p), i);
       add_vertex(values, ids);
       report(i, element.count);
     }
+  }
+
+  /// A number of an attribute, or what is skipped.
+  void read_other(const Property& p, const Column& column, std::uint64_t i) {
+    if (column.attribute == Column::kNone) return skip(p);
+    const double number = values_.any_number(p.type);
+    const Range range = range_of(p.type);
+    if (!Values::kBinary && range.high < 1e300 &&
+        !(number >= range.low && number <= range.high &&
+          number == static_cast<double>(static_cast<std::int64_t>(number))))
+      values_.refuse(fmt::format("{} is no number of type {}", number, p.type_name));
+    Attribute& attribute = mesh_.attributes[column.attribute];
+    attribute.values[i * attribute.info.components + column.component] = number;
   }
 
   double id_half(Type type) {
@@ -79,9 +104,20 @@ class BodyReader {
 
   /// Vertices of the same size each: the values that are kept stand at fixed places.
   void read_rows(const Element& element, bool ids) {
+    struct Source {
+      std::size_t place;
+      Type type;
+      double* to;
+      std::size_t step;
+    };
+    std::vector<Source> others;
     std::size_t size = 0, places[kRoles] = {};
     Type types[kRoles] = {};
     for (const Property& p : element.properties) {
+      if (const Column& column = column_of(element, p); column.attribute != Column::kNone) {
+        Attribute& attribute = mesh_.attributes[column.attribute];
+        others.push_back({size, p.type, attribute.values.data() + column.component, attribute.info.components});
+      }
       if (p.role < Role::indices) {
         places[static_cast<std::size_t>(p.role)] = size;
         types[static_cast<std::size_t>(p.role)] = p.type;
@@ -94,6 +130,10 @@ class BodyReader {
       double values[kRoles] = {};
       for (std::size_t r = 0; r < roles; ++r) values[r] = Values::number_at(row + places[r], types[r]);
       add_vertex(values, ids);
+      for (Source& other : others) {
+        *other.to = Values::number_at(row + other.place, other.type);
+        other.to += other.step;
+      }
       report(i, element.count);
     }
   }
@@ -109,13 +149,39 @@ class BodyReader {
     // As if all were triangles; the count was checked against the file.
     if (element.name == "face") mesh_.corners.reserve(3 * element.count);
     for (std::uint64_t i = 0; i < element.count; ++i) {
+      const std::size_t first = mesh_.corners.size();
       for (const Property& p : element.properties) {
+        const Column& column = column_of(element, p);
         if (p.role == Role::indices)
           end_face(mesh_, read_corners(p));
+        else if (column.is_texture_list)
+          read_texture_list(p);
         else
-          skip(p);
+          read_other(p, column, i);
       }
+      end_texture_lists(element, mesh_.corners.size() - first);
       report(i, element.count);
+    }
+  }
+
+  void read_texture_list(const Property& p) {
+    const std::uint64_t count = values_.whole(*p.count_type);
+    if (count > values_.left_for(p.type)) values_.refuse("the file is cut off");
+    texture_list_.clear();
+    for (std::uint64_t n = 0; n < count; ++n) texture_list_.push_back(values_.any_number(p.type));
+  }
+
+  /// Two numbers per corner; lists of another length say nothing.
+  void end_texture_lists(const Element& element, std::size_t corners) {
+    for (const Property& p : element.properties) {
+      const Column& column = column_of(element, p);
+      if (!column.is_texture_list) continue;
+      if (texture_list_.size() != 2 * corners) {
+        if (!texture_list_.empty()) dropped_.add("texture lists with another number of corners than their face");
+        texture_list_.assign(2 * corners, std::numeric_limits<double>::quiet_NaN());
+      }
+      auto& values = mesh_.attributes[column.attribute].values;
+      values.insert(values.end(), texture_list_.begin(), texture_list_.end());
     }
   }
 
@@ -146,6 +212,8 @@ class BodyReader {
   MeshData& mesh_;
   const Progress& progress_;
   DroppedCounter dropped_;
+  std::vector<Column> columns_;  ///< of the element at hand
+  std::vector<double> texture_list_;
 };
 
 }  // namespace

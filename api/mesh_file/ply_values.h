@@ -18,6 +18,11 @@ class AsciiValues {
       : scan_(file, header.size, header.lines, progress) {}
 
   double number(Type) { return scan_.number_anywhere("a value"); }
+  /// A number of an attribute: as its type holds it, and not always finite.
+  double any_number(Type type) {
+    const double value = scan_.any_number_anywhere("a value");
+    return type == Type::float32 ? static_cast<double>(static_cast<float>(value)) : value;
+  }
   std::uint64_t whole(Type) {
     const std::int64_t value = scan_.integer_anywhere("a value");
     if (value < 0) refuse(std::to_string(value) + " is negative");
@@ -44,6 +49,7 @@ class BinaryValues {
   BinaryValues(const FileBytes& file, const Header& header) : file_(file), at_(header.size) {}
 
   double number(Type type) { return number_at(take(size_of(type)), type); }
+  double any_number(Type type) { return number(type); }
   static double number_at(const char* p, Type type) {
     switch (type) {
       case Type::float32:

@@ -51,18 +51,23 @@ void read_binary(const FileBytes& file, MeshData& mesh, const Progress& progress
                                (text.size() - kHeader) / kRecord));
   mesh.positions.reserve(3 * std::size_t{count});
   mesh.corners.reserve(3 * std::size_t{count});
-  std::uint64_t attributes = 0;
+  std::vector<double> attributes;
+  attributes.reserve(count);
+  bool any_attribute = false;
   for (std::uint32_t f = 0; f < count; ++f) {
     const char* at = text.data() + kHeader + kRecord * f;
     for (int c = 0; c < 3; ++c) {
       const char* p = at + 12 + 12 * c;
       add_corner(mesh, {load<float>(p), load<float>(p + 4), load<float>(p + 8)});
     }
-    attributes += load<std::uint16_t>(at + 48) != 0;
+    attributes.push_back(load<std::uint16_t>(at + 48));
+    any_attribute |= attributes.back() != 0;
     if (progress && f % 65536 == 0) progress(static_cast<double>(f) / count);
   }
   DroppedCounter dropped;
-  dropped.add("facet attributes", attributes);
+  if (any_attribute)
+    mesh.attributes.push_back(
+        {{"attribute", AttributeOf::face, NumberType::uint16, 1, Meaning::other, {}, {}}, std::move(attributes)});
   dropped.add("bytes behind the last facet", text.size() - kHeader - kRecord * std::size_t{count});
   dropped.hand_over(mesh);
 }

@@ -1,5 +1,6 @@
 #include <algorithm>
-#include <span>
+#include <numeric>
+#include <tuple>
 
 #include "api/mesh_file/mesh_file.h"
 
@@ -21,8 +22,11 @@ constexpr std::uint64_t kMostSteps = std::uint64_t{1} << 32, kStepsPerCorner = 6
 /// turns neither way, and where there is none of these either, the first.
 class EarClipper {
  public:
-  EarClipper(const std::vector<Point>& positions, std::span<const std::uint32_t> polygon, std::uint64_t& steps)
-      : positions_(positions), left_(polygon.begin(), polygon.end()), steps_(steps) {
+  /// \param first the polygon's first position in `mesh.corners`
+  EarClipper(const MeshData& mesh, std::uint32_t first, std::uint32_t size, std::uint64_t& steps)
+      : mesh_(mesh), left_(size), steps_(steps) {
+    std::iota(left_.begin(), left_.end(), first);
+    std::rotate(left_.begin(), left_.begin() + static_cast<std::ptrdiff_t>(least_turn()), left_.end());
     for (std::size_t i = 0; i < left_.size(); ++i) {
       const Point n = cross(at(i) - at(0), at(i + 1) - at(0));
       normal_ = {normal_.x + n.x, normal_.y + n.y, normal_.z + n.z};
@@ -30,23 +34,36 @@ class EarClipper {
   }
 
   /// False when the steps ran out and the rest became a fan.
-  bool clip(std::vector<std::uint32_t>& corners) {
+  bool clip(std::vector<Triangle>& triangles) {
     std::size_t from = 0;
     while (left_.size() > 3) {
       if (!steps_) {
-        fan(corners);
+        fan(triangles);
         return false;
       }
       const std::size_t ear = find_ear(from);
-      cut(ear, corners);
+      cut(ear, triangles);
       from = ear ? ear - 1 : 0;
     }
-    corners.insert(corners.end(), left_.begin(), left_.end());
+    triangles.push_back({left_[0], left_[1], left_[2]});
     return true;
   }
 
  private:
-  const Point& at(std::size_t i) const { return positions_[left_[i % left_.size()]]; }
+  /// Polygons are cut alike wherever they begin: from the least sequence of positions on.
+  [[nodiscard]] std::size_t least_turn() const {
+    const auto key = [](const Point& p) { return std::tie(p.x, p.y, p.z); };
+    std::size_t best = 0;
+    for (std::size_t turn = 1; turn < left_.size(); ++turn)
+      for (std::size_t i = 0; i < left_.size() && steps_ > 0; ++i, --steps_) {
+        const Point &p = at(turn + i), &q = at(best + i);
+        if (p == q) continue;
+        if (key(p) < key(q)) best = turn;
+        break;
+      }
+    return best;
+  }
+  const Point& at(std::size_t i) const { return mesh_.positions[mesh_.corners[left_[i % left_.size()]]]; }
 
   /// Positive where corner i turns left, with its neighbours.
   double turn(std::size_t i) const {
@@ -80,42 +97,40 @@ class EarClipper {
     return true;
   }
 
-  void fan(std::vector<std::uint32_t>& corners) const {
-    for (std::size_t i = 2; i < left_.size(); ++i) corners.insert(corners.end(), {left_[0], left_[i - 1], left_[i]});
+  void fan(std::vector<Triangle>& triangles) const {
+    for (std::size_t i = 2; i < left_.size(); ++i) triangles.push_back({left_[0], left_[i - 1], left_[i]});
   }
 
-  void cut(std::size_t ear, std::vector<std::uint32_t>& corners) {
+  void cut(std::size_t ear, std::vector<Triangle>& triangles) {
     const std::size_t n = left_.size();
-    corners.insert(corners.end(), {left_[(ear + n - 1) % n], left_[ear], left_[(ear + 1) % n]});
+    triangles.push_back({left_[(ear + n - 1) % n], left_[ear], left_[(ear + 1) % n]});
     left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(ear));
   }
 
-  const std::vector<Point>& positions_;
-  std::vector<std::uint32_t> left_;
+  const MeshData& mesh_;
+  std::vector<std::uint32_t> left_;  ///< positions in mesh_.corners
   Point normal_;
   std::uint64_t& steps_;
 };
 
 }  // namespace
 
-std::uint64_t triangulate(MeshData& mesh) {
-  if (mesh.face_sizes.empty()) return 0;
-  std::uint64_t cut = 0, fanned = 0, steps = kMostSteps + kStepsPerCorner * mesh.corners.size();
-  std::vector<std::uint32_t> corners;
-  corners.reserve(mesh.corners.size());
-  std::size_t begin = 0;
-  for (const std::uint32_t size : mesh.face_sizes) {
-    const auto polygon = std::span(mesh.corners).subspan(begin, size);
-    if (size == 3)
-      corners.insert(corners.end(), polygon.begin(), polygon.end());
-    else
-      fanned += !EarClipper(mesh.positions, polygon, steps).clip(corners);
-    cut += size > 3;
-    begin += size;
+Triangulation triangulate(const MeshData& mesh) {
+  Triangulation cut;
+  cut.corners.reserve(mesh.corners.size() / 3);
+  std::uint64_t steps = kMostSteps + kStepsPerCorner * mesh.corners.size();
+  std::uint32_t first = 0;
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+    const std::uint32_t size = mesh.face_sizes.empty() ? 3 : mesh.face_sizes[f];
+    if (size == 3) {
+      cut.corners.push_back({first, first + 1, first + 2});
+    } else {
+      ++cut.polygons;
+      cut.fans += !EarClipper(mesh, first, size, steps).clip(cut.corners);
+    }
+    cut.face.resize(cut.corners.size(), f);
+    first += size;
   }
-  mesh.corners = std::move(corners);
-  mesh.face_sizes.clear();
-  if (fanned) mesh.dropped.push_back({"outlines of polygons that take too long to cut (made fans)", fanned});
   return cut;
 }
 

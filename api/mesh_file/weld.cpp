@@ -21,10 +21,18 @@ void weld_exact(MeshData& mesh) {
     first[order[i]] = i && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
   std::vector<std::uint32_t> to(order.size());
   std::uint32_t kept = 0;
+  const auto keep_values = [&](std::uint32_t v) {
+    for (Attribute& attribute : mesh.attributes)
+      if (attribute.info.of == AttributeOf::vertex)
+        for (std::size_t k = 0; k < attribute.info.components; ++k)
+          attribute.values[kept * std::size_t{attribute.info.components} + k] =
+              attribute.values[v * std::size_t{attribute.info.components} + k];
+  };
   for (std::uint32_t v = 0; v < first.size(); ++v) {
     if (first[v] == v) {
       mesh.positions[kept] = mesh.positions[v];
       if (!mesh.vertex_ids.empty()) mesh.vertex_ids[kept] = mesh.vertex_ids[v];
+      keep_values(v);
       to[v] = kept++;
     } else {
       to[v] = to[first[v]];
@@ -32,6 +40,9 @@ void weld_exact(MeshData& mesh) {
   }
   mesh.positions.resize(kept);
   if (!mesh.vertex_ids.empty()) mesh.vertex_ids.resize(kept);
+  for (Attribute& attribute : mesh.attributes)
+    if (attribute.info.of == AttributeOf::vertex)
+      attribute.values.resize(kept * std::size_t{attribute.info.components});
   for (std::uint32_t& v : mesh.corners) v = to[v];
   mesh.soup = false;
 }

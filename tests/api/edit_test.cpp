@@ -36,11 +36,11 @@ void move(Patch& patch, Patch::Mesh::VertexHandle v, double x, double y, double 
 }
 
 /// The triangles that an edit should lead to: those before, with the patch's points.
-TriangleSet expected_after(const Snapshot& before, const std::map<VertexKey, LatticePoint>& moved) {
+FaceSet expected_after(const Snapshot& before, const std::map<VertexKey, LatticePoint>& moved) {
   RegionMesh mesh = whole(before);
   for (std::size_t v = 0; v < mesh.keys.size(); ++v)
     if (const auto it = moved.find(mesh.keys[v]); it != moved.end()) mesh.points[v] = it->second;
-  return triangle_set(mesh);
+  return face_set(mesh);
 }
 
 std::map<VertexKey, LatticePoint> points_of(const Patch& patch) {
@@ -101,7 +101,7 @@ TEST(Commit, OfMovesOfEveryKindChangesJustThem) {
     const auto candidates = vertices_of_kind(patch, where);
     ASSERT_FALSE(candidates.empty());
     move(patch, candidates[candidates.size() / 2], 3, -2, 5);
-    const TriangleSet expected = expected_after(before, points_of(patch));
+    const FaceSet expected = expected_after(before, points_of(patch));
     const ChangeReport status = edit.status();
     EXPECT_EQ(status.vertices_moved, 1U);
     EXPECT_NEAR(status.max_displacement, std::sqrt(38.0) * before.lattice().step, 1e-12);
@@ -110,8 +110,8 @@ TEST(Commit, OfMovesOfEveryKindChangesJustThem) {
     EXPECT_EQ(report.revision, VersionId(2));
     EXPECT_GT(report.bytes_written, 0U);
     const Snapshot after = repository->snapshot();
-    EXPECT_EQ(triangle_set(whole(after)), expected);
-    EXPECT_EQ(triangle_set(whole(repository->snapshot("mesh", "v1"))), triangle_set(whole(before))) << "history stays";
+    EXPECT_EQ(face_set(whole(after)), expected);
+    EXPECT_EQ(face_set(whole(repository->snapshot("mesh", "v1"))), face_set(whole(before))) << "history stays";
     const DiffReport diff = repository->diff(before, after);
     EXPECT_EQ(diff.vertices_moved, 1U);
     EXPECT_EQ(diff.changed.size(), report.charts_reencoded);
@@ -132,12 +132,12 @@ TEST(Commit, OfTheRegionsOwnBorderTakesTheNeighboursAlong) {
       ++moved;
     }
   ASSERT_GT(moved, 10U);
-  const TriangleSet expected = expected_after(before, points_of(patch));
+  const FaceSet expected = expected_after(before, points_of(patch));
   EXPECT_EQ(edit.status().border_vertices_moved, moved);
   const CommitReport report = edit.commit(message("border"));
   EXPECT_EQ(report.charts_touched, 1U);
   EXPECT_GT(report.charts_reencoded, 3U);
-  EXPECT_EQ(triangle_set(whole(repository->snapshot())), expected);
+  EXPECT_EQ(face_set(whole(repository->snapshot())), expected);
   EXPECT_TRUE(repository->verify({}).ok());
 }
 
@@ -151,9 +151,9 @@ TEST(Commit, OfMovesAtNonManifoldPlacesMovesAllCharts) {
     for (const auto v : patch.mesh().all_vertices()) ++uses[patch.mesh().property(patch.key_property(), v)];
     for (const auto v : patch.mesh().all_vertices())
       if (uses[patch.mesh().property(patch.key_property(), v)] > 1) move(patch, v, 2, 2, 2);
-    const TriangleSet expected = expected_after(before, points_of(patch));
+    const FaceSet expected = expected_after(before, points_of(patch));
     (void)edit.commit(message("tip"));
-    EXPECT_EQ(triangle_set(whole(repository->snapshot())), expected);
+    EXPECT_EQ(face_set(whole(repository->snapshot())), expected);
   }
 }
 
@@ -175,10 +175,10 @@ TEST(Commit, FarOutsideTheFirstBoxExpandsTheRange) {
   Patch& patch = edit.checkout(charts({2}));
   const auto inner = vertices_of_kind(patch, VertexKey::Where::chart);
   move(patch, inner.front(), 1e7, -3e6, 5e5);
-  const TriangleSet expected = expected_after(before, points_of(patch));
+  const FaceSet expected = expected_after(before, points_of(patch));
   const CommitReport report = edit.commit(message("far"));
   EXPECT_EQ(report.ranges_expanded, 1U);
-  EXPECT_EQ(triangle_set(whole(repository->snapshot())), expected);
+  EXPECT_EQ(face_set(whole(repository->snapshot())), expected);
   EXPECT_EQ(repository->snapshot().lattice(), before.lattice()) << "the step and so the error bound stay";
   auto back = repository->begin_edit();
   Patch& again = back.checkout(charts({2}));
@@ -187,7 +187,7 @@ TEST(Commit, FarOutsideTheFirstBoxExpandsTheRange) {
     if (p[0] > 100) move(again, v, -1e7, 3e6, -5e5);
   }
   (void)back.commit(message("back"));
-  EXPECT_EQ(triangle_set(whole(repository->snapshot())), triangle_set(whole(before)));
+  EXPECT_EQ(face_set(whole(repository->snapshot())), face_set(whole(before)));
 }
 
 TEST(Commit, BeyondTheLatticeIsRefused) {
@@ -214,7 +214,7 @@ TEST(Commit, RefusesChangedConnectivity) {
 
 TEST(Commit, AHundredRoundsOfMovesAndMovesBackEndWhereTheyBegan) {
   TempRepository repository(terrain(40, 40), 300);
-  const TriangleSet start = triangle_set(whole(repository->snapshot()));
+  const FaceSet start = face_set(whole(repository->snapshot()));
   std::mt19937 random(11);
   for (int round = 0; round < 50; ++round) {
     const auto chart = ChartId(1 + static_cast<std::uint32_t>(random() % repository->snapshot().info().charts));
@@ -236,7 +236,7 @@ TEST(Commit, AHundredRoundsOfMovesAndMovesBackEndWhereTheyBegan) {
     }
   }
   EXPECT_EQ(repository->resolve("HEAD"), VersionId(101));
-  EXPECT_EQ(triangle_set(whole(repository->snapshot())), start);
+  EXPECT_EQ(face_set(whole(repository->snapshot())), start);
   EXPECT_TRUE(repository->verify({}).ok());
 }
 
@@ -250,13 +250,13 @@ TEST(Commit, OfDisjointChartsGoesInBesideOthers) {
   move(b, vertices_of_kind(b, VertexKey::Where::chart).front(), 0, 0, 4);
   auto both = points_of(a);
   for (const auto& [key, point] : points_of(b)) both[key] = point;
-  const TriangleSet expected = expected_after(mine.base(), both);
+  const FaceSet expected = expected_after(mine.base(), both);
   EXPECT_EQ(theirs.commit(message("theirs")).revision, VersionId(2));
   const CommitReport report = mine.commit(message("mine"));
   EXPECT_TRUE(report.conflicts.empty());
   EXPECT_EQ(report.revision, VersionId(3));
   EXPECT_EQ(report.parent, VersionId(2));
-  EXPECT_EQ(triangle_set(whole(repository->snapshot())), expected);
+  EXPECT_EQ(face_set(whole(repository->snapshot())), expected);
 }
 
 TEST(Commit, OfTheSameChartIsAConflictAndWritesNothing) {

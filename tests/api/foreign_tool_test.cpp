@@ -19,20 +19,13 @@ struct FileMesh {
 
 FileMesh read(const fs::path& file) {
   mesh_file::MeshData data = mesh_file::read_mesh(file);
-  mesh_file::triangulate(data);
   FileMesh mesh{data.positions, {}};
   for (std::size_t c = 0; c + 2 < data.corners.size(); c += 3)
     mesh.faces.push_back({data.corners[c], data.corners[c + 1], data.corners[c + 2]});
   return mesh;
 }
 
-void write(const FileMesh& mesh, const fs::path& file) {
-  mesh_file::MeshOutput out;
-  out.positions = mesh.positions;
-  out.faces = mesh.faces;
-  out.scalar = mesh_file::Scalar::float64;
-  mesh_file::write_mesh(file, mesh_file::format_of(file), out);
-}
+void write(const FileMesh& mesh, const fs::path& file) { write_test_mesh({mesh.positions, mesh.faces}, file); }
 
 FileMesh renumbered(const FileMesh& mesh, unsigned seed) {
   const TestMesh shuffled_mesh = shuffled({mesh.positions, mesh.faces}, seed);
@@ -87,7 +80,7 @@ class ForeignTool : public ::testing::Test {
     EXPECT_EQ(repository_->status_file(file_).vertices_moved, moved);
     const CommitReport report = repository_->commit_file(file_, message("foreign"));
     EXPECT_EQ(report.vertices_moved, moved);
-    EXPECT_TRUE(triangle_set(whole(repository_->snapshot())) == triangle_set(expected));
+    EXPECT_TRUE(face_set(whole(repository_->snapshot())) == face_set(expected));
     return report;
   }
 
@@ -185,7 +178,7 @@ TEST_F(ForeignTool, OthersWorkBesideItIsNeverUndone) {
   theirs.positions[static_cast<std::size_t>(inner - region.keys.begin())].z += 9 * step;
   write(theirs, file_);
   ASSERT_EQ(repository_->commit_file(file_, message("theirs")).revision, VersionId(2));
-  const TriangleSet chart15 = triangle_set(repository_->snapshot().read({ChartId(15)}));
+  const FaceSet chart15 = face_set(repository_->snapshot().read({ChartId(15)}));
 
   const auto edit_chart_3 = [&](double by) {
     FileMesh mesh = read(mine);
@@ -203,7 +196,7 @@ TEST_F(ForeignTool, OthersWorkBesideItIsNeverUndone) {
     const CommitReport report = repository_->commit_file(mine, message("mine"));
     EXPECT_TRUE(report.conflicts.empty());
     EXPECT_EQ(report.vertices_moved, 1U);
-    EXPECT_EQ(triangle_set(repository_->snapshot().read({ChartId(15)})), chart15) << "their work stands";
+    EXPECT_EQ(face_set(repository_->snapshot().read({ChartId(15)})), chart15) << "their work stands";
   }
 }
 

@@ -33,11 +33,11 @@ TEST(Import, ThenExportGivesTheSameTrianglesOnTheLattice) {
     SCOPED_TRACE(family.name);
     TempRepository repository(family.mesh);
     const Snapshot snapshot = repository->snapshot();
-    const auto expected = triangle_set(snapped(snapshot.lattice(), family.mesh.positions), family.mesh.faces);
-    EXPECT_EQ(triangle_set(whole(snapshot)), expected);
+    const auto expected = face_set(snapped(snapshot.lattice(), family.mesh.positions), family.mesh.faces);
+    EXPECT_EQ(face_set(whole(snapshot)), expected);
     for (const char* name : {"out.ply", "out.obj", "out.off"}) {
       const auto report = repository->export_mesh(snapshot, repository / name, {});
-      EXPECT_EQ(triangle_set_of_file(snapshot.lattice(), repository / name), expected) << name;
+      EXPECT_EQ(face_set_of_file(snapshot.lattice(), repository / name), expected) << name;
       EXPECT_EQ(report.faces, family.mesh.faces.size());
       EXPECT_EQ(report.vertices, family.mesh.positions.size()) << "no vertex is lost or doubled";
     }
@@ -125,7 +125,7 @@ TEST(Export, OfTheFinestLatticeIsExact) {
   const Snapshot snapshot = repository->snapshot();
   for (const char* name : {"out.ply", "out.obj"}) {
     (void)repository->export_mesh(snapshot, repository / name, {});
-    EXPECT_TRUE(triangle_set_of_file(snapshot.lattice(), repository / name) == triangle_set(whole(snapshot))) << name;
+    EXPECT_TRUE(face_set_of_file(snapshot.lattice(), repository / name) == face_set(whole(snapshot))) << name;
   }
 }
 
@@ -139,7 +139,7 @@ TEST(Export, OfGeoreferencedCoordinatesKeepsThem) {
   const Snapshot snapshot = repository->snapshot();
   for (const char* name : {"utm.ply", "utm.obj", "utm.off"}) {
     (void)repository->export_mesh(snapshot, repository / name, {});
-    EXPECT_EQ(triangle_set_of_file(snapshot.lattice(), repository / name), triangle_set(whole(snapshot))) << name;
+    EXPECT_EQ(face_set_of_file(snapshot.lattice(), repository / name), face_set(whole(snapshot))) << name;
   }
 }
 

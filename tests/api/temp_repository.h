@@ -40,10 +40,12 @@ class TempFolder {
 
 inline void write_test_mesh(const TestMesh& mesh, const std::filesystem::path& file) {
   mesh_file::MeshOutput out;
+  std::vector<std::uint32_t> corners;
+  for (const Triangle& t : mesh.faces) corners.insert(corners.end(), t.begin(), t.end());
   out.positions = mesh.positions;
-  out.faces = mesh.faces;
+  out.corners = corners;
   out.scalar = mesh_file::Scalar::float64;
-  mesh_file::write_mesh(file, mesh_file::format_of(file), out);
+  (void)mesh_file::write_mesh(file, mesh_file::format_of(file), out);
 }
 
 /// A fresh repository with one mesh.
@@ -76,21 +78,32 @@ class TempRepository {
   ImportReport report_;
 };
 
-/// Triangles by position, each turned to its smallest sequence, sorted: equal for equal surfaces however numbered.
-using TriangleSet = std::vector<std::array<LatticePoint, 3>>;
+/// Faces by position, each turned to its smallest sequence, sorted: equal for equal surfaces however numbered.
+using FaceSet = std::vector<std::vector<LatticePoint>>;
 
-inline TriangleSet triangle_set(const std::vector<LatticePoint>& points, const std::vector<Triangle>& faces) {
-  TriangleSet set;
-  for (const Triangle& t : faces) {
-    std::array<LatticePoint, 3> best{};
-    for (std::uint32_t turn = 0; turn < 3; ++turn) {
-      const std::array<LatticePoint, 3> p{points[t[turn]], points[t[(turn + 1) % 3]], points[t[(turn + 2) % 3]]};
-      if (turn == 0 || p < best) best = p;
+/// \param sizes corners per face; empty when all are triangles
+inline FaceSet face_set(const std::vector<LatticePoint>& points, const std::vector<std::uint32_t>& corners,
+                        const std::vector<std::uint32_t>& sizes = {}) {
+  FaceSet set(sizes.empty() ? corners.size() / 3 : sizes.size());
+  std::size_t corner = 0;
+  for (std::size_t f = 0; f < set.size(); ++f) {
+    std::vector<LatticePoint>& face = set[f];
+    for (std::uint32_t i = 0; i < (sizes.empty() ? 3 : sizes[f]); ++i) face.push_back(points[corners[corner++]]);
+    std::vector<LatticePoint> best = face;
+    for (std::size_t turn = 1; turn < face.size(); ++turn) {
+      std::rotate(face.begin(), face.begin() + 1, face.end());
+      best = std::min(best, face);
     }
-    set.push_back(best);
+    face = std::move(best);
   }
   std::sort(set.begin(), set.end());
   return set;
+}
+
+inline FaceSet face_set(const std::vector<LatticePoint>& points, const std::vector<Triangle>& faces) {
+  std::vector<std::uint32_t> corners;
+  for (const Triangle& t : faces) corners.insert(corners.end(), t.begin(), t.end());
+  return face_set(points, corners);
 }
 
 inline std::vector<LatticePoint> snapped(const Lattice& lattice, const std::vector<Point>& positions) {
@@ -99,17 +112,20 @@ inline std::vector<LatticePoint> snapped(const Lattice& lattice, const std::vect
   return points;
 }
 
-inline TriangleSet triangle_set_of_file(const Lattice& lattice, const std::filesystem::path& file) {
-  mesh_file::MeshData data = mesh_file::read_mesh(file);
-  mesh_file::triangulate(data);
-  std::vector<Triangle> faces;
-  for (std::size_t c = 0; c + 2 < data.corners.size(); c += 3)
-    faces.push_back({data.corners[c], data.corners[c + 1], data.corners[c + 2]});
-  return triangle_set(snapped(lattice, data.positions), faces);
+inline FaceSet face_set_of_file(const Lattice& lattice, const std::filesystem::path& file) {
+  const mesh_file::MeshData data = mesh_file::read_mesh(file);
+  return face_set(snapped(lattice, data.positions), data.corners, data.face_sizes);
 }
 
-inline RegionMesh whole(const Snapshot& snapshot) { return snapshot.read(snapshot.find({{WholeMesh{}}, 0})); }
+inline RegionMesh whole(const Snapshot& snapshot) {
+  return snapshot.read_with_attributes(snapshot.find({{WholeMesh{}}, 0}));
+}
 
-inline TriangleSet triangle_set(const RegionMesh& region) { return triangle_set(region.points, region.faces); }
+inline FaceSet face_set(const RegionMesh& region) {
+  if (region.polygon_sizes.empty()) return face_set(region.points, region.faces);
+  std::vector<std::uint32_t> corners;
+  for (const std::uint32_t corner : region.polygon_corners) corners.push_back(region.faces[corner / 3][corner % 3]);
+  return face_set(region.points, corners, region.polygon_sizes);
+}
 
 }  // namespace ramcdb::test

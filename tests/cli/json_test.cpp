@@ -71,7 +71,7 @@ TEST_F(Json, PayloadIsTheSumOfItsKinds) {
 TEST_F(Json, Import) {
   const auto json = json_of({"import", repo_, path("wavy.ply"), "--name", "again"});
   expect_starts_with(json, kInfoKeys);
-  for (const char* key : {"dropped", "polygons_triangulated", "vertices_welded", "measured_error", "seconds"})
+  for (const char* key : {"dropped", "polygons_as_fans", "vertices_welded", "measured_error", "seconds"})
     EXPECT_TRUE(json.contains(key)) << key;
   EXPECT_LE(json["measured_error"].get<double>(), json["max_error"].get<double>());
 }

@@ -53,9 +53,23 @@ void expect_same_surface(const Chart& chart, const Chart& decoded, const std::ve
   EXPECT_EQ(sorted_faces(renumbered), sorted_faces(chart.faces));
 }
 
+/// That every decoded face is the one that it says, from the corner that it says.
+void expect_sources(const Chart& chart, const EncodedChart& encoded) {
+  std::set<std::uint32_t> faces;
+  ASSERT_EQ(encoded.source_corner.size(), chart.faces.size());
+  for (std::size_t f = 0; f < chart.faces.size(); ++f) {
+    const std::uint32_t corner = encoded.source_corner[f];
+    ASSERT_LT(corner, 3 * chart.faces.size());
+    EXPECT_TRUE(faces.insert(corner / 3).second);
+    for (std::uint32_t i = 0; i < 3; ++i)
+      EXPECT_EQ(encoded.source_vertex[encoded.decoded.faces[f][i]], chart.faces[corner / 3][(corner + i) % 3]);
+  }
+}
+
 void expect_round_trip(const Chart& chart, const LatticeBox& range) {
   const EncodedChart encoded = encode(chart, range);
   expect_same_surface(chart, encoded.decoded, encoded.source_vertex);
+  expect_sources(chart, encoded);
 
   const DecodedChart decoded = decode(encoded, range);
   EXPECT_EQ(decoded.chart, encoded.decoded);

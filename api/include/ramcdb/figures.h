@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "ramcdb/attributes.h"
 #include "ramcdb/geometry.h"
 #include "ramcdb/ids.h"
 
@@ -31,6 +32,7 @@ struct MeshInfo {
   std::string mesh;
   VersionId revision;
   std::uint64_t vertices = 0, faces = 0, charts = 0, wires = 0, corners = 0;
+  std::uint64_t polygons = 0;  ///< faces of the file with more than three corners; `faces` counts their triangles
   std::uint64_t components = 0, boundary_loops = 0, nonmanifold_edges = 0;
   std::uint64_t isolated_vertices = 0, degenerate_faces = 0, duplicate_faces = 0, nonmanifold_vertices = 0,
                 inconsistent_edges = 0;
@@ -40,6 +42,12 @@ struct MeshInfo {
   std::string profile;
   std::uint32_t target_faces = 0;
   Point lo, hi;  ///< exact bounding box, model units
+  struct Layer {
+    AttributeInfo info;
+    double max_error = 0;  ///< 0: kept without loss
+  };
+  std::vector<Layer> attributes;
+  std::vector<std::string> references;  ///< to other files: "mtllib a.mtl", "texture skin.png"
   MeshBytes bytes;
   struct Spread {
     std::uint32_t min = 0, median = 0, p95 = 0, max = 0;
@@ -56,10 +64,11 @@ struct MeshSummary {
 struct ChartSummary {
   ChartId id;
   std::uint32_t faces = 0, inner_vertices = 0, border_vertices = 0;
-  Point lo, hi;  ///< exact bounding box, model units
-  std::uint64_t bytes = 0;
-  std::vector<ChartId> neighbours;  ///< charts that share a wire, ascending
-  VersionId version;                ///< that last changed it
+  Point lo, hi;                       ///< exact bounding box, model units
+  std::uint64_t bytes = 0;            ///< of its geometry and connectivity
+  std::uint64_t attribute_bytes = 0;  ///< of its attributes and polygons
+  std::vector<ChartId> neighbours;    ///< charts that share a wire, ascending
+  VersionId version;                  ///< that last changed it
 };
 
 struct VersionRecord {
@@ -85,10 +94,11 @@ struct ImportReport {
     std::string what;
     std::uint64_t count = 0;
   };
-  std::vector<Dropped> dropped;             ///< named and counted: what the file holds and the repository does not
-  std::uint64_t polygons_triangulated = 0;  ///< faces with more than three corners
-  std::uint64_t vertices_welded = 0;        ///< corners of a triangle soup that were joined on equal positions
-  double measured_error = 0;                ///< largest distance along an axis between file and lattice, model units
+  std::vector<Dropped> dropped;        ///< named and counted: what the file holds and the repository does not
+  std::uint64_t polygons = 0;          ///< faces with more than three corners
+  std::uint64_t polygons_as_fans = 0;  ///< of them, those that took too long to cut well
+  std::uint64_t vertices_welded = 0;   ///< corners of a triangle soup that were joined on equal positions
+  double measured_error = 0;           ///< largest distance along an axis between file and lattice, model units
   double seconds = 0;
 };
 
@@ -96,6 +106,7 @@ struct CheckoutReport {
   VersionId revision;
   std::uint64_t charts = 0, faces = 0, vertices = 0;
   std::uint64_t bytes_read = 0, blobs_read = 0, pages_read = 0;
+  std::vector<ImportReport::Dropped> left_out;  ///< what the file's format cannot hold
   double seconds = 0;
 };
 
@@ -104,17 +115,19 @@ struct ChangeReport {
   VersionId base, tip;
   std::vector<ChartId> charts_touched;  ///< with a moved vertex, border included, inside the region
   std::uint64_t vertices_moved = 0, vertices_added = 0, vertices_removed = 0;
+  std::uint64_t values_changed = 0;                   ///< of attributes
   std::uint64_t border_vertices_moved = 0;            ///< of them, on the region's own border
   double max_displacement = 0, rms_displacement = 0;  ///< model units; rms over moved vertices
   struct ChartChange {
     ChartId chart;
     std::uint64_t vertices_moved = 0;
     double max_displacement = 0;
+    std::uint64_t values_changed = 0;
   };
   std::vector<ChartChange> per_chart;
   std::vector<ChartId> changed_by_others;  ///< charts of the region that newer versions changed
   std::vector<ChartId> conflicts;          ///< of these, the ones that this edit touches too
-  [[nodiscard]] bool clean() const { return vertices_moved + vertices_added + vertices_removed == 0; }
+  [[nodiscard]] bool clean() const { return vertices_moved + vertices_added + vertices_removed + values_changed == 0; }
 };
 
 struct CommitReport {
@@ -124,7 +137,9 @@ struct CommitReport {
   std::uint64_t charts_touched = 0;  ///< with a moved vertex inside the region
   std::uint64_t charts_reencoded = 0, charts_added = 0, charts_removed = 0, wires_reencoded = 0, ranges_expanded = 0;
   std::uint64_t vertices_moved = 0, vertices_added = 0, vertices_removed = 0;
-  double max_displacement = 0;  ///< model units
+  std::uint64_t values_changed = 0;    ///< of attributes
+  std::uint64_t layers_reencoded = 0;  ///< blobs of attributes
+  double max_displacement = 0;         ///< model units
   std::uint64_t bytes_written = 0;
   double seconds = 0;
   std::vector<ChartId> conflicts;  ///< not empty: refused, nothing was written

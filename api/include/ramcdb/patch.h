@@ -3,6 +3,8 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "ramcdb/snapshot.h"
 
@@ -27,6 +29,13 @@ class Patch {
   [[nodiscard]] const Snapshot& base() const { return base_; }
   [[nodiscard]] const RegionMesh& region() const { return region_; }
 
+  /// The attributes of the region, to be read and changed: values per vertex of `region()` (region_property() says
+  /// which one a patch vertex is), per corner (3 * face + 0..2) or per face of it. Only numbers may change.
+  [[nodiscard]] std::vector<Attribute>& attributes() { return attributes_; }
+  [[nodiscard]] const std::vector<Attribute>& attributes() const { return attributes_; }
+  /// The one of this name; null when there is none.
+  [[nodiscard]] Attribute* attribute(std::string_view name);
+
   /// Vertex property: the vertex's VertexKey::packed().
   [[nodiscard]] OpenMesh::VPropHandleT<std::uint64_t> key_property() const { return key_; }
   /// Face property: the value of the face's ChartId.
@@ -42,6 +51,7 @@ class Patch {
  private:
   Snapshot base_;
   RegionMesh region_;
+  std::vector<Attribute> attributes_;
   Mesh mesh_;
   OpenMesh::VPropHandleT<std::uint64_t> key_;
   OpenMesh::FPropHandleT<std::uint32_t> chart_;

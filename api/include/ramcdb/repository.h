@@ -24,7 +24,8 @@ struct ImportOptions {
   std::string name;      ///< of the mesh; the file's stem when empty
   unsigned bits = 16;    ///< step = largest extent / (2^bits - 1); 1..30
   double precision = 0;  ///< not 0: largest coordinate error in model units instead of `bits` (step = 2 * this)
-  std::optional<Lattice> lattice;  ///< instead of both: this very lattice
+  std::optional<Lattice> lattice;    ///< instead of both: this very lattice
+  bool lossless_attributes = false;  ///< keep colours, normals and texture coordinates that are floats bit by bit
   std::uint32_t chart_faces = 5000;
   bool paper_chartify = false;  ///< the paper's own Lloyd, for comparison
   std::string message;          ///< "import FILE" when empty

@@ -32,6 +32,12 @@ struct RegionMesh {
   std::vector<bool> outer_border;            ///< per vertex: also belongs to a chart outside the region
   std::vector<Triangle> faces;               ///< chart by chart, in decode order
   std::vector<std::uint32_t> chart_of_face;  ///< per face: position in `charts`
+
+  // What follows is there when it was asked for. A corner is 3 * face + 0..2.
+  std::vector<Attribute> attributes;           ///< values per vertex, corner or face, as above
+  std::vector<std::uint32_t> polygon_of_face;  ///< per face its polygon; all three empty when there are triangles only
+  std::vector<std::uint32_t> polygon_sizes;    ///< corners per polygon
+  std::vector<std::uint32_t> polygon_corners;  ///< polygon after polygon; a corner of one of its triangles each
 };
 
 /// What a piece of reading cost.
@@ -63,6 +69,9 @@ class Snapshot {
   /// Throws corrupt naming chart and version, not_found for an id that does not exist at this version.
   [[nodiscard]] RegionMesh read(const std::vector<ChartId>& charts, unsigned threads = 1,
                                 ReadCost* cost = nullptr) const;
+  /// The same with attributes and polygons, whose blobs it reads too.
+  [[nodiscard]] RegionMesh read_with_attributes(const std::vector<ChartId>& charts, unsigned threads = 1,
+                                                ReadCost* cost = nullptr) const;
 
   [[nodiscard]] Point position(LatticePoint p) const { return lattice().position(p); }
 

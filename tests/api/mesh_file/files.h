@@ -48,6 +48,18 @@ void write_bytes(const std::filesystem::path& file, std::string_view bytes);
 /// Faces as the writer takes them.
 [[nodiscard]] std::vector<Triangle> triangles(const mesh_file::MeshData& mesh);
 
+/// The same, as corners.
+[[nodiscard]] std::vector<std::uint32_t> corners_of(const std::vector<Triangle>& faces);
+
+/// The mesh with its polygons cut to triangles; attributes are left out.
+[[nodiscard]] mesh_file::MeshData cut_to_triangles(const mesh_file::MeshData& mesh);
+
+/// The attribute of this name; fails the test and returns an empty one when there is none.
+[[nodiscard]] Attribute attribute_of(const mesh_file::MeshData& mesh, std::string_view name);
+
+/// The numbers of one value.
+[[nodiscard]] std::vector<double> value_of(const Attribute& attribute, std::size_t at);
+
 /// The bytes of `value`, lowest first or highest first.
 template <class T>
 [[nodiscard]] std::string bytes_of(T value, bool big_endian = false) {

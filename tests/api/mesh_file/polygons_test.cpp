@@ -81,8 +81,8 @@ void expect_cut(MeshData mesh, double least_area = 0) {
     const Point n = cross(at(i) - at(0), at(i + 1) - at(0));
     for (int a = 0; a < 3; ++a) normal[a] += n[a];
   }
-  EXPECT_EQ(mesh_file::triangulate(mesh), before.corners.size() > 3 ? 1U : 0U);
-  EXPECT_TRUE(mesh.face_sizes.empty());
+  EXPECT_EQ(mesh_file::triangulate(mesh).polygons, before.corners.size() > 3 ? 1U : 0U);
+  mesh = cut_to_triangles(mesh);
   ASSERT_EQ(mesh.corners.size(), 3 * (before.corners.size() - 2));
   EXPECT_EQ(bits(mesh.positions), bits(before.positions));
   const double length = std::sqrt(dot(normal, normal));
@@ -166,12 +166,15 @@ TEST(Triangulate, OtherPolygonsStayWhole) {
   MeshData mesh = on_plane({{0, 0}, {1, 0}, {1, 1}, {0, 1}, {5, 5}}, 1);
   mesh.corners = {0, 1, 2, 0, 1, 2, 3, 4, 3, 2, 1, 0};
   mesh.face_sizes = {3, 4, 5};
-  EXPECT_EQ(mesh_file::triangulate(mesh), 2U);
-  EXPECT_EQ(mesh.face_count(), 1U + 2U + 3U);
-  EXPECT_EQ((std::vector<std::uint32_t>(mesh.corners.begin(), mesh.corners.begin() + 3)),
-            (std::vector<std::uint32_t>{0, 1, 2}));
-  EXPECT_EQ(mesh_file::triangulate(mesh), 0U);
-  EXPECT_TRUE(mesh.dropped.empty());
+  const mesh_file::Triangulation cut = mesh_file::triangulate(mesh);
+  EXPECT_EQ(cut.polygons, 2U);
+  EXPECT_EQ(cut.fans, 0U);
+  EXPECT_EQ(cut.face, (std::vector<std::uint32_t>{0, 1, 1, 2, 2, 2}));
+  EXPECT_EQ(cut.corners[0], (Triangle{0, 1, 2}));
+  for (std::size_t t = 0; t < cut.corners.size(); ++t)
+    for (const std::uint32_t corner : cut.corners[t])
+      EXPECT_EQ(cut.face[t], corner < 3 ? 0U : corner < 7 ? 1U : 2U) << "a triangle's corners are those of its face";
+  EXPECT_EQ(mesh_file::triangulate(cut_to_triangles(mesh)).polygons, 0U);
 }
 
 TEST(Triangulate, PolygonsWithoutShapeTakeLittleTime) {
@@ -187,10 +190,11 @@ TEST(Triangulate, PolygonsWithoutShapeTakeLittleTime) {
       mesh.corners.push_back(i);
     }
     mesh.face_sizes = {kCorners};
-    EXPECT_EQ(mesh_file::triangulate(mesh), 1U);
-    EXPECT_EQ(mesh.face_count(), kCorners - 2);
-    EXPECT_TRUE(is_sound(mesh));
-    EXPECT_EQ(mesh.dropped.size(), kind > 1 ? 1U : 0U);  // fans are told of
+    const mesh_file::Triangulation cut = mesh_file::triangulate(mesh);
+    EXPECT_EQ(cut.polygons, 1U);
+    EXPECT_EQ(cut.corners.size(), kCorners - 2);
+    EXPECT_EQ(cut.fans, kind > 1 ? 1U : 0U);
+    for (const Triangle& t : cut.corners) EXPECT_LT(std::max({t[0], t[1], t[2]}), kCorners);
   }
 }
 

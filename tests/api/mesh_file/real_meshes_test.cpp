@@ -84,15 +84,15 @@ bool are_floats(const std::vector<Point>& positions) {
 
 /// What comes back from a file of the same format that we wrote ourselves.
 void expect_same_again(const mesh_file::MeshData& mesh, const ScratchFolder& scratch, const std::string& name) {
-  auto cut = mesh;
-  mesh_file::triangulate(cut);
+  const auto cut = cut_to_triangles(mesh);
   const auto faces = triangles(cut);
   for (const bool ascii : {false, true}) {
     const auto file = scratch.file("again" + fs::path(name).extension().string());
     // Binary floats stay floats; a float32's text is another double.
     const bool binary = !ascii && mesh_file::format_of(file) == mesh_file::Format::ply;
     const auto scalar = binary && are_floats(cut.positions) ? mesh_file::Scalar::float32 : mesh_file::Scalar::float64;
-    mesh_file::write_mesh(file, mesh_file::format_of(file), {cut.positions, faces, scalar, {}, {}}, ascii);
+    mesh_file::write_mesh(file, mesh_file::format_of(file),
+                          {cut.positions, corners_of(faces), {}, scalar, {}, {}, {}, {}}, ascii);
     const auto again = mesh_file::read_mesh(file);
     EXPECT_EQ(again.face_count(), faces.size()) << name;
     if (mesh.soup) continue;  // corners stand in the order of faces

@@ -68,7 +68,8 @@ class RoundTrip : public testing::TestWithParam<Case> {};
 TEST_P(RoundTrip, KeepsEveryBit) {
   const auto [name, scalar, ascii] = GetParam();
   const TestMesh mesh = hard_numbers(scalar);
-  const MeshData read = write_and_read(name, {mesh.positions, mesh.faces, scalar, {}, {}}, ascii);
+  const MeshData read =
+      write_and_read(name, {mesh.positions, corners_of(mesh.faces), {}, scalar, {}, {}, {}, {}}, ascii);
   EXPECT_TRUE(is_sound(read));
   const bool text = ascii || mesh_file::format_of(name) != Format::ply;
   EXPECT_EQ(bits(text && scalar == Scalar::float32 ? as_floats(read.positions) : read.positions), bits(mesh.positions));
@@ -95,7 +96,8 @@ TEST(RoundTripText, ShortDoublesStayDoubles) {
   const std::vector<Point> rounds_well{{128.602, 0, 0}, {0.1, 0, 0}, {0.2, 0, 0}};  // 128.602 with %.17g
   for (const auto& positions : {tenths, rounds_well})
     for (const char* name : {"a.obj", "a.off", "a.ply"}) {
-      const MeshData read = write_and_read(name, {positions, faces, Scalar::float64, {}, {}}, true);
+      const MeshData read =
+          write_and_read(name, {positions, corners_of(faces), {}, Scalar::float64, {}, {}, {}, {}}, true);
       EXPECT_EQ(bits(read.positions), bits(positions)) << name;
     }
 }
@@ -124,7 +126,8 @@ TEST(ForeignText, NumbersAreTheNearestDoublesInEveryFormat) {
 
 TEST(RoundTripStl, KeepsEveryCorner) {
   const TestMesh mesh = hard_numbers(Scalar::float32);
-  const MeshData read = write_and_read("a.stl", {mesh.positions, mesh.faces, Scalar::float32, {}, {}}, false);
+  const MeshData read =
+      write_and_read("a.stl", {mesh.positions, corners_of(mesh.faces), {}, Scalar::float32, {}, {}, {}, {}}, false);
   ASSERT_EQ(read.face_count(), mesh.faces.size());
   EXPECT_TRUE(read.soup);
   EXPECT_TRUE(read.dropped.empty());
@@ -141,7 +144,8 @@ TEST(RoundTripIds, EveryBitOfAnIdStays) {
   ids[0] = 0;
   ids[1] = ~std::uint64_t{0};
   for (const bool ascii : {false, true}) {
-    const MeshData read = write_and_read("ids.ply", {mesh.positions, mesh.faces, Scalar::float64, ids, {}}, ascii);
+    const MeshData read = write_and_read(
+        "ids.ply", {mesh.positions, corners_of(mesh.faces), {}, Scalar::float64, ids, {}, {}, {}}, ascii);
     EXPECT_EQ(read.vertex_ids, ids);
     EXPECT_EQ(bits(read.positions), bits(mesh.positions));
     EXPECT_EQ(triangles(read), mesh.faces);
@@ -151,24 +155,25 @@ TEST(RoundTripIds, EveryBitOfAnIdStays) {
 TEST(RoundTripIds, FloatsKeepTheirIds) {
   const TestMesh mesh = hard_numbers(Scalar::float32);
   const std::vector<std::uint64_t> ids(mesh.positions.size(), 0xfffffffffffffffdU);
-  const MeshData read = write_and_read("ids.ply", {mesh.positions, mesh.faces, Scalar::float32, ids, {}}, false);
+  const MeshData read =
+      write_and_read("ids.ply", {mesh.positions, corners_of(mesh.faces), {}, Scalar::float32, ids, {}, {}, {}}, false);
   EXPECT_EQ(read.vertex_ids, ids);
   EXPECT_EQ(bits(read.positions), bits(mesh.positions));
 }
 
-TEST(RoundTripColors, FaceColoursAreWrittenAndNamedAsDropped) {
+TEST(RoundTripColors, FaceColoursAreWritten) {
   const TestMesh mesh = boxes(2);
   const std::vector<mesh_file::FaceColor> colors(mesh.faces.size(), {1, 200, 255});
-  const MeshOutput out{mesh.positions, mesh.faces, Scalar::float32, {}, colors};
+  const std::vector<std::uint32_t> corners = corners_of(mesh.faces);
+  const MeshOutput out{mesh.positions, corners, {}, Scalar::float32, {}, colors, {}, {}};
   for (const bool ascii : {false, true}) {
     const MeshData read = write_and_read("colors.ply", out, ascii);
     EXPECT_EQ(triangles(read), mesh.faces);
-    for (const char* name : {"red", "green", "blue"})
-      EXPECT_EQ(dropped(read, std::string("face property '") + name + "' (uchar)"), mesh.faces.size());
+    EXPECT_EQ(value_of(attribute_of(read, "color"), 1), (std::vector<double>{1, 200, 255}));
   }
   const MeshData off = write_and_read("colors.off", out, false);
   EXPECT_EQ(triangles(off), mesh.faces);
-  EXPECT_EQ(dropped(off, "face colours"), mesh.faces.size());
+  EXPECT_EQ(value_of(attribute_of(off, "color"), 1), (std::vector<double>{1, 200, 255}));
 }
 
 /// A locale with a decimal comma, also where none is installed.
@@ -201,7 +206,8 @@ TEST(RoundTripLocale, DecimalCommaDoesNotMatter) {
   if (!locale.installed()) std::printf("no C locale with a decimal comma is installed: only the C++ one was set\n");
   const TestMesh mesh = hard_numbers(Scalar::float64);
   for (const char* name : {"a.ply", "a.obj", "a.off"}) {
-    const MeshData read = write_and_read(name, {mesh.positions, mesh.faces, Scalar::float64, {}, {}}, true);
+    const MeshData read =
+        write_and_read(name, {mesh.positions, corners_of(mesh.faces), {}, Scalar::float64, {}, {}, {}, {}}, true);
     EXPECT_EQ(bits(read.positions), bits(mesh.positions)) << name;
     EXPECT_EQ(triangles(read), mesh.faces) << name;
   }
@@ -215,7 +221,10 @@ TEST(Writer, RefusesCoordinatesThatTheFileCannotHold) {
   for (const double wrong : {1e39, -1e300, std::nan(""), HUGE_VAL}) {
     const std::vector<Point> positions{{0, 0, 0}, {1, 0, 0}, {0, wrong, 0}};
     for (const Format format : {Format::ply, Format::obj, Format::off, Format::stl})
-      EXPECT_THROW(mesh_file::write_mesh(file, format, {positions, faces, Scalar::float32, {}, {}}), Error) << wrong;
+      EXPECT_THROW(
+          mesh_file::write_mesh(file, format, {positions, corners_of(faces), {}, Scalar::float32, {}, {}, {}, {}}),
+          Error)
+          << wrong;
   }
   EXPECT_EQ(read_bytes(file), "what was there");
 }
@@ -224,12 +233,12 @@ TEST(Writer, LeavesNothingBehindWhereItCannotWrite) {
   const ScratchFolder scratch;
   const TestMesh mesh = boxes(1);
   EXPECT_THROW(mesh_file::write_mesh(scratch.file("none") / "a.ply", Format::ply,
-                                     {mesh.positions, mesh.faces, Scalar::float32, {}, {}}),
+                                     {mesh.positions, corners_of(mesh.faces), {}, Scalar::float32, {}, {}, {}, {}}),
                Error);
   std::filesystem::create_directory(scratch.file("a.ply"));
-  EXPECT_THROW(
-      mesh_file::write_mesh(scratch.file("a.ply"), Format::ply, {mesh.positions, mesh.faces, Scalar::float32, {}, {}}),
-      Error);
+  EXPECT_THROW(mesh_file::write_mesh(scratch.file("a.ply"), Format::ply,
+                                     {mesh.positions, corners_of(mesh.faces), {}, Scalar::float32, {}, {}, {}, {}}),
+               Error);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch.folder()), {}), 1);
 }
 
@@ -238,7 +247,8 @@ TEST(Writer, ReplacesTheFileAndLeavesNoOther) {
   const TestMesh mesh = boxes(1);
   const auto file = scratch.file("a.ply");
   write_bytes(file, "older");
-  mesh_file::write_mesh(file, Format::ply, {mesh.positions, mesh.faces, Scalar::float32, {}, {}});
+  mesh_file::write_mesh(file, Format::ply,
+                        {mesh.positions, corners_of(mesh.faces), {}, Scalar::float32, {}, {}, {}, {}});
   EXPECT_EQ(mesh_file::read_mesh(file).face_count(), mesh.faces.size());
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch.folder()), {}), 1);
 }

@@ -64,7 +64,7 @@ TEST(Stl, TheLengthTellsBinaryFromText) {
 TEST(Stl, WhatIsDroppedIsNamed) {
   const auto mesh = read_text("a.stl", binary("x", 2, 2, 0.5F, 7) + "tail");
   EXPECT_EQ(mesh.face_count(), 2U);
-  EXPECT_EQ(dropped(mesh, "facet attributes"), 2U);
+  EXPECT_EQ(attribute_of(mesh, "attribute").values, (std::vector<double>{7, 7}));
   EXPECT_EQ(dropped(mesh, "bytes behind the last facet"), 4U);
 }
 

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "api/layers.h"
+#include "api/mesh_file/mesh_file.h"
+#include "chartify/wire_net_builder.h"
+#include "codec/chart_codec.h"
+#include "codec/polygon_codec.h"
+
+namespace ramcdb::detail {
+
+/// The layers of a mesh that is imported: what its file has, taken apart chart by chart.
+class LayerSource {
+ public:
+  /// All must outlive the source. `mesh` is the canonical form of `cut`'s triangles.
+  LayerSource(const mesh_file::MeshData& data, const mesh_file::Triangulation& cut, const chartify::CanonicalMesh& mesh,
+              bool lossless);
+
+  [[nodiscard]] const LayerTable& table() const { return table_; }
+  /// Per canonical face the file's face that it was cut from; empty when all of them are triangles.
+  [[nodiscard]] std::vector<std::uint32_t> polygon_of_face() const;
+
+  struct Blob {
+    std::uint16_t layer;
+    Buffer bytes;
+  };
+  /// The layer blobs of a chart, ascending. Charts of triangles alone need none for polygons.
+  [[nodiscard]] std::vector<Blob> encode(const chartify::NetChart& chart, const codec::EncodedChart& encoded) const;
+
+ private:
+  struct Places;
+  [[nodiscard]] Places places_in_file(const chartify::NetChart& chart, const codec::EncodedChart& encoded) const;
+  [[nodiscard]] codec::LayerValues values(const Layer& layer, const Attribute& attribute, const Places& places) const;
+  [[nodiscard]] codec::Polygons polygons(const Places& places) const;
+
+  const mesh_file::MeshData& data_;
+  const mesh_file::Triangulation& cut_;
+  const chartify::CanonicalMesh& mesh_;
+  std::vector<std::uint8_t> turns_;  ///< canonical corner i of a face is corner (i + turn) % 3 of its triangle
+  LayerTable table_;
+};
+
+}  // namespace ramcdb::detail

@@ -1,0 +1,221 @@
+#include "api/layers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "ramcdb/error.h"
+
+namespace ramcdb::detail {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kTableFormat = 1;
+constexpr unsigned kGridBits = 48;
+
+unsigned bits_of(NumberType type) {
+  switch (type) {
+    case NumberType::int8:
+    case NumberType::uint8:
+      return 8;
+    case NumberType::int16:
+    case NumberType::uint16:
+      return 16;
+    case NumberType::int32:
+    case NumberType::uint32:
+    case NumberType::float32:
+      return 32;
+    case NumberType::float64:
+      return 64;
+  }
+  return 64;
+}
+
+bool is_signed(NumberType type) {
+  return type == NumberType::int8 || type == NumberType::int16 || type == NumberType::int32;
+}
+
+template <class Float, class Bits>
+std::uint64_t ordered_bits(double number) {
+  const auto bits = std::bit_cast<Bits>(static_cast<Float>(number));
+  constexpr Bits kSign = Bits{1} << (8 * sizeof(Bits) - 1);
+  return bits & kSign ? static_cast<Bits>(~bits) : static_cast<Bits>(bits | kSign);
+}
+
+template <class Float, class Bits>
+double from_ordered_bits(std::uint64_t number) {
+  const auto bits = static_cast<Bits>(number);
+  constexpr Bits kSign = Bits{1} << (8 * sizeof(Bits) - 1);
+  return static_cast<double>(std::bit_cast<Float>(static_cast<Bits>(bits & kSign ? bits ^ kSign : ~bits)));
+}
+
+/// How finely numbers are kept that programs compute with; 0: all of them.
+double step_for(Meaning meaning) {
+  switch (meaning) {
+    case Meaning::normal:
+    case Meaning::color:
+      return 1.0 / (1 << 12);
+    case Meaning::texture:
+      return 1.0 / (1 << 16);
+    default:
+      return 0;
+  }
+}
+
+bool on_grid(double number, double step) {
+  return std::abs(number / step) < static_cast<double>(std::uint64_t{1} << (kGridBits - 2));
+}
+
+[[noreturn]] void refuse(const Layer& layer, double number) {
+  throw Error(Errc::invalid_argument, fmt::format("attribute '{}' cannot hold {}", layer.info.name, number), {},
+              "keep its numbers within the type that it has");
+}
+
+std::uint64_t to_number(const Layer& layer, double number) {
+  switch (layer.coding) {
+    case LayerCoding::float_bits:
+      return layer.info.type == NumberType::float32 ? ordered_bits<float, std::uint32_t>(number)
+                                                    : ordered_bits<double, std::uint64_t>(number);
+    case LayerCoding::grid: {
+      if (!on_grid(number, layer.step)) refuse(layer, number);
+      const auto whole = static_cast<std::int64_t>(std::floor(number / layer.step + 0.5));
+      return static_cast<std::uint64_t>(whole) & ((std::uint64_t{1} << kGridBits) - 1);
+    }
+    default: {
+      const unsigned bits = bits_of(layer.info.type);
+      const double most = std::ldexp(1.0, static_cast<int>(bits - is_signed(layer.info.type)));
+      if (!(number >= (is_signed(layer.info.type) ? -most : 0) && number < most) || number != std::floor(number))
+        refuse(layer, number);
+      return static_cast<std::uint64_t>(static_cast<std::int64_t>(number)) & ((std::uint64_t{1} << bits) - 1);
+    }
+  }
+}
+
+double from_number(const Layer& layer, std::uint64_t number) {
+  const auto extended = [&](unsigned bits) {
+    return static_cast<double>(static_cast<std::int64_t>(number << (64 - bits)) >> (64 - bits));
+  };
+  switch (layer.coding) {
+    case LayerCoding::float_bits:
+      return layer.info.type == NumberType::float32 ? from_ordered_bits<float, std::uint32_t>(number)
+                                                    : from_ordered_bits<double, std::uint64_t>(number);
+    case LayerCoding::grid:
+      return extended(kGridBits) * layer.step;
+    default:
+      return is_signed(layer.info.type) ? extended(bits_of(layer.info.type)) : static_cast<double>(number);
+  }
+}
+
+json layer_json(const Layer& layer) {
+  return {{"i", layer.id},
+          {"n", layer.info.name},
+          {"o", static_cast<int>(layer.info.of)},
+          {"t", static_cast<int>(layer.info.type)},
+          {"k", layer.info.components},
+          {"m", static_cast<int>(layer.info.meaning)},
+          {"f", layer.info.fields},
+          {"v", layer.info.names},
+          {"c", static_cast<int>(layer.coding)},
+          {"s", layer.step}};
+}
+
+/// A stored number of an enumeration with values 1..last.
+template <class Enum>
+Enum enum_from(const json& j, Enum last) {
+  const int value = j.get<int>();
+  if (value < 1 || value > static_cast<int>(last)) throw Error(Errc::corrupt, "unknown kind of layer");
+  return static_cast<Enum>(value);
+}
+
+Layer layer_from(const json& j) {
+  Layer layer;
+  layer.id = j.at("i").get<std::uint16_t>();
+  layer.info.name = j.at("n").get<std::string>();
+  layer.info.of = enum_from(j.at("o"), AttributeOf::face);
+  layer.info.type = enum_from(j.at("t"), NumberType::float64);
+  layer.info.components = j.at("k").get<std::uint8_t>();
+  layer.info.meaning = enum_from(j.at("m"), Meaning::group);
+  layer.info.fields = j.at("f").get<std::vector<std::string>>();
+  layer.info.names = j.at("v").get<std::vector<std::string>>();
+  layer.coding = enum_from(j.at("c"), LayerCoding::polygons);
+  layer.step = j.at("s").get<double>();
+  const bool bad_grid = layer.coding == LayerCoding::grid && !(layer.step > 0 && std::isfinite(layer.step));
+  if (layer.info.components < 1 || layer.info.components > 16 || bad_grid || layer.id == 0)
+    throw Error(Errc::corrupt, "a layer that cannot be");
+  return layer;
+}
+
+}  // namespace
+
+codec::LayerShape Layer::shape() const {
+  codec::LayerShape shape{info.of, info.components, static_cast<std::uint8_t>(bits_of(info.type)), false};
+  if (coding == LayerCoding::grid) shape.bits = kGridBits;
+  shape.is_color = info.meaning == Meaning::color && info.components >= 3;
+  return shape;
+}
+
+const Layer* LayerTable::find(std::uint16_t id) const {
+  const auto it = std::find_if(layers.begin(), layers.end(), [&](const Layer& layer) { return layer.id == id; });
+  return it == layers.end() ? nullptr : &*it;
+}
+
+const Layer* LayerTable::polygons() const {
+  const auto it = std::find_if(layers.begin(), layers.end(),
+                               [](const Layer& layer) { return layer.coding == LayerCoding::polygons; });
+  return it == layers.end() ? nullptr : &*it;
+}
+
+Buffer encode_layer_table(const LayerTable& table) {
+  json layers = json::array();
+  for (const Layer& layer : table.layers) layers.push_back(layer_json(layer));
+  return json::to_cbor(json{{"format", kTableFormat}, {"layers", layers}, {"references", table.references}});
+}
+
+LayerTable decode_layer_table(Bytes blob, std::string_view where) {
+  try {
+    const json j = json::from_cbor(blob.begin(), blob.end());
+    if (j.at("format").get<int>() != kTableFormat)
+      throw Error(Errc::unsupported_version, "the layer table has a newer format", where, "use a newer ramcdb");
+    LayerTable table;
+    for (const json& layer : j.at("layers")) table.layers.push_back(layer_from(layer));
+    table.references = j.at("references").get<std::vector<std::string>>();
+    return table;
+  } catch (const json::exception& e) {
+    throw Error(Errc::corrupt, std::string("the layer table is damaged: ") + e.what(), where, "run `ramcdb verify`");
+  }
+}
+
+Layer layer_for(const Attribute& attribute, std::uint16_t id, bool lossless) {
+  Layer layer{id, attribute.info, LayerCoding::integer, 0};
+  if (!is_float(attribute.info.type)) return layer;
+  layer.coding = LayerCoding::float_bits;
+  const double step = step_for(attribute.info.meaning);
+  const bool fits = std::all_of(attribute.values.begin(), attribute.values.end(),
+                                [&](double number) { return std::isnan(number) || on_grid(number, step); });
+  if (lossless || step == 0 || !fits) return layer;
+  layer.coding = LayerCoding::grid;
+  layer.step = step;
+  return layer;
+}
+
+bool to_numbers(const Layer& layer, std::span<const double> value, std::span<std::uint64_t> numbers) {
+  const auto is_nan = [](double number) { return std::isnan(number); };
+  const bool absent = std::all_of(value.begin(), value.end(), is_nan);
+  if (absent && layer.coding != LayerCoding::float_bits) {
+    std::fill(numbers.begin(), numbers.end(), 0);
+    return false;
+  }
+  for (std::size_t k = 0; k < value.size(); ++k) numbers[k] = to_number(layer, value[k]);
+  return true;
+}
+
+void from_numbers(const Layer& layer, std::span<const std::uint64_t> numbers, std::span<double> value) {
+  for (std::size_t k = 0; k < value.size(); ++k) value[k] = from_number(layer, numbers[k]);
+}
+
+}  // namespace ramcdb::detail

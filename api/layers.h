@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "codec/layer_codec.h"
+#include "ramcdb/attributes.h"
+#include "ramcdb/bytes.h"
+
+namespace ramcdb::detail {
+
+/// How the numbers of an attribute become whole numbers. Stored; never reused.
+enum class LayerCoding : std::uint8_t {
+  integer = 1,     ///< as they are
+  float_bits = 2,  ///< a float's bits, so ordered that they count upwards with the number: lossless
+  grid = 3,        ///< round(number / step)
+  polygons = 4,    ///< no attribute: which triangles are one polygon
+};
+
+/// One layer of a mesh: an attribute, or its polygons. Charts have a blob each.
+struct Layer {
+  std::uint16_t id = 0;  ///< 1, 2, ... within the mesh
+  AttributeInfo info;
+  LayerCoding coding = LayerCoding::integer;
+  double step = 0;  ///< of a grid
+
+  [[nodiscard]] codec::LayerShape shape() const;
+  /// The largest error that coding makes; 0 where it makes none.
+  [[nodiscard]] double max_error() const { return coding == LayerCoding::grid ? step / 2 : 0; }
+  friend bool operator==(const Layer&, const Layer&) = default;
+};
+
+/// All layers of a mesh, and what else of its file is kept.
+struct LayerTable {
+  std::vector<Layer> layers;            ///< ascending by id
+  std::vector<std::string> references;  ///< to other files, such as "mtllib a.mtl"
+
+  [[nodiscard]] bool empty() const { return layers.empty() && references.empty(); }
+  [[nodiscard]] const Layer* find(std::uint16_t id) const;
+  [[nodiscard]] const Layer* polygons() const;
+  friend bool operator==(const LayerTable&, const LayerTable&) = default;
+};
+
+/// As CBOR.
+[[nodiscard]] Buffer encode_layer_table(const LayerTable& table);
+/// Throws corrupt, naming `where`.
+[[nodiscard]] LayerTable decode_layer_table(Bytes blob, std::string_view where);
+
+/// The layer that an attribute is stored as: floats that programs compute with (colours, normals, texture coordinates)
+/// on a grid, unless `lossless` or the grid cannot hold them; all else without loss.
+[[nodiscard]] Layer layer_for(const Attribute& attribute, std::uint16_t id, bool lossless);
+
+/// One value of an attribute as a layer codes it: `numbers` gets info.components of them. False when it is absent.
+/// Numbers that the layer cannot hold (not whole, out of range) throw invalid_argument naming the attribute.
+[[nodiscard]] bool to_numbers(const Layer& layer, std::span<const double> value, std::span<std::uint64_t> numbers);
+/// The way back; `value` gets info.components numbers.
+void from_numbers(const Layer& layer, std::span<const std::uint64_t> numbers, std::span<double> value);
+
+}  // namespace ramcdb::detail
