@@ -13,6 +13,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "api/mesh_file/attribute_names.h"
+
 namespace ramcdb::mesh_file {
 namespace {
 
@@ -27,6 +29,21 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' |
 const char* behind_plus(std::string_view text) {
   const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
   return text.data() + (plus ? 1 : 0);
+}
+
+/// The nearest float; infinite only where the text says so.
+template <class Float>
+Float parse_float(const TextScanner& scan, std::string_view text) {
+  if (text.empty()) throw scan.bad("a value is missing");
+  Float value = 0;
+  const auto [end, error] = fast_float::from_chars(behind_plus(text), text.data() + text.size(), value);
+  if (end != text.data() + text.size()) throw scan.bad(fmt::format("a value is no number: '{}'", shown(text)));
+  const bool digits = text.find_first_of("0123456789") != text.npos;
+  if (digits && !std::isfinite(value))
+    throw scan.bad(fmt::format("a value is too large for its type: '{}'", shown(text)));
+  if (error != std::errc() && error != std::errc::result_out_of_range)
+    throw scan.bad(fmt::format("a value is no number: '{}'", shown(text)));
+  return value;
 }
 
 }  // namespace
@@ -124,6 +141,14 @@ std::string_view TextScanner::word() {
   return found;
 }
 
+std::string_view TextScanner::rest() {
+  std::string_view found = rest_;
+  rest_ = {};
+  while (!found.empty() && is_blank(found.front())) found.remove_prefix(1);
+  while (!found.empty() && is_blank(found.back())) found.remove_suffix(1);
+  return found;
+}
+
 std::string_view TextScanner::word_anywhere() {
   while (true) {
     if (const std::string_view found = word(); !found.empty()) return found;
@@ -131,18 +156,13 @@ std::string_view TextScanner::word_anywhere() {
   }
 }
 
-double TextScanner::parse_number(std::string_view text, std::string_view what) {
-  const double value = parse_any_number(text, what);
-  if (!std::isfinite(value)) throw bad(fmt::format("{} is not finite: '{}'", what, shown(text)));
-  return value;
-}
-
-double TextScanner::parse_any_number(std::string_view text, std::string_view what) const {
+double TextScanner::parse_number(std::string_view text, std::string_view what) const {
   if (text.empty()) throw bad(fmt::format("{} is missing", what));
   double value = 0;
   const auto [end, error] = fast_float::from_chars(behind_plus(text), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size())
     throw bad(fmt::format("{} is no number: '{}'", what, shown(text)));
+  if (!std::isfinite(value)) throw bad(fmt::format("{} is not finite: '{}'", what, shown(text)));
   return value;
 }
 
@@ -155,7 +175,19 @@ std::int64_t TextScanner::parse_integer(std::string_view text, std::string_view 
   return value;
 }
 
-double TextScanner::any_number_anywhere(std::string_view what) { return parse_any_number(word_anywhere(), what); }
+double TextScanner::parse_value(std::string_view text, NumberType type) const {
+  if (type == NumberType::float64) return parse_float<double>(*this, text);
+  if (type == NumberType::float32) return static_cast<double>(parse_float<float>(*this, text));
+  std::int64_t whole = 0;
+  const auto [end, error] = std::from_chars(behind_plus(text), text.data() + text.size(), whole);
+  const bool written_whole = error == std::errc() && end == text.data() + text.size() && !text.empty();
+  // Some write 255.0 where an integer is to stand.
+  const double value = written_whole ? static_cast<double>(whole) : parse_float<double>(*this, text);
+  if (std::isnan(value) || !range_of(type).holds(value))
+    throw bad(fmt::format("'{}' is no number of the type of its property", shown(text)));
+  return value;
+}
+
 double TextScanner::number(std::string_view what) { return parse_number(word(), what); }
 double TextScanner::number_anywhere(std::string_view what) { return parse_number(word_anywhere(), what); }
 std::int64_t TextScanner::integer(std::string_view what) { return parse_integer(word(), what); }
@@ -174,9 +206,9 @@ void DroppedCounter::add(std::string_view what, std::uint64_t count) {
     dropped_.push_back({std::string(what), count});
 }
 
-void DroppedCounter::hand_over(MeshData& mesh) {
-  for (auto& dropped : dropped_)
-    if (dropped.count) mesh.dropped.push_back(std::move(dropped));
+std::vector<Dropped> DroppedCounter::take() {
+  std::erase_if(dropped_, [](const Dropped& dropped) { return dropped.count == 0; });
+  return std::move(dropped_);
 }
 
 }  // namespace ramcdb::mesh_file

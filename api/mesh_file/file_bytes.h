@@ -64,16 +64,20 @@ class TextScanner {
   bool next_line(bool continued = false);
   /// The next word of the line; empty at its end.
   std::string_view word();
+  /// What is left of the line, blanks around it taken away.
+  std::string_view rest();
   /// The next word, on whatever line it stands; empty at the end of the file.
   std::string_view word_anywhere();
 
   /// The next word as a number. Throws with the place.
   double number(std::string_view what);
   double number_anywhere(std::string_view what);
-  /// One that may be infinite or none at all (nan).
-  double any_number_anywhere(std::string_view what);
   std::int64_t integer(std::string_view what);
   std::int64_t integer_anywhere(std::string_view what);
+
+  /// The next word as a number of this type: whole and in range for integers, the nearest for floats, where `nan` and
+  /// `inf` are numbers too. Throws with the place.
+  double value_anywhere(NumberType type) { return parse_value(word_anywhere(), type); }
 
   [[nodiscard]] std::size_t line() const { return line_; }
   [[nodiscard]] std::size_t offset() const { return at_; }
@@ -83,9 +87,9 @@ class TextScanner {
   /// What a word starts with that ends the line: the rest is a comment. 0: there are no comments.
   char comment = 0;
 
-  double parse_number(std::string_view word, std::string_view what);
-  double parse_any_number(std::string_view word, std::string_view what) const;
+  double parse_number(std::string_view word, std::string_view what) const;
   std::int64_t parse_integer(std::string_view word, std::string_view what) const;
+  double parse_value(std::string_view word, NumberType type) const;
 
  private:
   [[nodiscard]] bool has_comment(std::string_view piece) const;
@@ -105,7 +109,7 @@ class DroppedCounter {
   static constexpr std::size_t kMostNames = 64;
 
   void add(std::string_view what, std::uint64_t count = 1);
-  void hand_over(MeshData& mesh);
+  [[nodiscard]] std::vector<Dropped> take();
 
  private:
   std::vector<Dropped> dropped_;

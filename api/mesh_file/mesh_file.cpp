@@ -16,8 +16,9 @@ constexpr std::size_t kMostVertices = 0xfffffffe;
 void check(const FileBytes& file, const MeshData& mesh) {
   if (mesh.positions.empty())
     throw Error(Errc::invalid_argument, "the file holds no vertex", file.name(), "check that it is the right file");
-  if (mesh.positions.size() > kMostVertices || mesh.face_count() > kMostVertices)
-    throw Error(Errc::limit_exceeded, "the file holds more than 2^32 - 2 vertices or faces", file.name(), "split it");
+  if (mesh.positions.size() > kMostVertices || mesh.corners.size() > kMostVertices)
+    throw Error(Errc::limit_exceeded, "the file holds more than 2^32 - 2 vertices, or corners of faces", file.name(),
+                "split it");
   for (const Point& p : mesh.positions)
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
       throw Error(Errc::invalid_argument,

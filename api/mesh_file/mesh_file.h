@@ -48,7 +48,7 @@ struct MeshData {
 /// coordinates that are not finite, or no vertex at all.
 [[nodiscard]] MeshData read_mesh(const std::filesystem::path& file, const std::function<void(double)>& progress = {});
 
-/// Makes vertices at equal positions one (-0 equals 0); of their ids and attributes the first one's stay.
+/// Makes vertices at equal positions one (-0 equals 0); of their ids and attributes the first's stay.
 void weld_exact(MeshData& mesh);
 
 /// Triangles of a mesh's faces, face after face.
@@ -60,7 +60,7 @@ struct Triangulation {
 };
 
 /// Cuts faces with more than three corners by ear clipping where they are not convex. A face with n corners gives n - 2
-/// triangles, which hang together along its diagonals.
+/// triangles, which hang together along its diagonals. Throws limit_exceeded beyond 2^32 - 1 corners.
 [[nodiscard]] Triangulation triangulate(const MeshData& mesh);
 
 struct FaceColor {
@@ -83,7 +83,11 @@ struct MeshOutput {
 /// shortest that read back as the same number of the scalar. STL is binary; PLY is binary
 /// little-endian unless `ascii`. Throws disk_full, storage, and invalid_argument for coordinates that are not finite or
 /// too large for the scalar (STL: for float32), faces that name no vertex, ids, colours or attributes that are not one
-/// each; then nothing was touched. Returns what the format could not hold, by name.
+/// each; then nothing was touched. Returns what the format could not hold, by name: PLY has all attributes of vertices
+/// and faces, without their `names`, and texture coordinates of corners; OBJ has colours of vertices, texture
+/// coordinates and normals, and of faces "material", "group", "object" and "smoothing"; OFF has colours, and of
+/// vertices normals and texture coordinates; STL has the attribute "attribute" (uint16) of faces. Integers that are NaN
+/// become 0 in PLY and STL.
 std::vector<Dropped> write_mesh(const std::filesystem::path& file, Format format, const MeshOutput& mesh,
                                 bool ascii = false);
 

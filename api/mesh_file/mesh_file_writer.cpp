@@ -1,94 +1,112 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "api/mesh_file/writers.h"
-#include "ramcdb/error.h"
 
 namespace ramcdb::mesh_file {
 namespace {
 
-const char* name_of(AttributeOf of) {
-  return of == AttributeOf::vertex ? "vertex" : of == AttributeOf::corner ? "corner" : "face";
-}
-
-const char* name_of(NumberType type) {
-  constexpr const char* kNames[] = {"char", "uchar", "short", "ushort", "int", "uint", "float", "double"};
-  return kNames[static_cast<std::size_t>(type) - 1];
-}
-
-std::size_t count_of(const MeshOutput& mesh, AttributeOf of) {
-  return of == AttributeOf::vertex   ? mesh.positions.size()
-         : of == AttributeOf::corner ? mesh.corners.size()
-                                     : face_count(mesh);
-}
-
 /// Nothing is written that our own reader would not take.
-void check(const std::filesystem::path& file, Format format, const MeshOutput& mesh) {
-  const auto refuse = [&](std::string_view what) {
-    return Error(Errc::invalid_argument, what, file.string(), "nothing was written");
-  };
-  const bool floats = mesh.scalar == Scalar::float32 || format == Format::stl;
-  const double largest = floats ? double{std::numeric_limits<float>::max()} : std::numeric_limits<double>::max();
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v)
-    for (int a = 0; a < 3; ++a)
-      if (!(std::abs(mesh.positions[v][a]) <= largest))
-        throw refuse(fmt::format("vertex {} has a coordinate that {} cannot hold", v, floats ? "float32" : "a file"));
-  std::size_t corners = 0;
-  for (const std::uint32_t size : mesh.face_sizes) corners += size;
-  if (mesh.face_sizes.empty() ? mesh.corners.size() % 3 != 0 : corners != mesh.corners.size())
-    throw refuse(fmt::format("{} corners do not make {} faces", mesh.corners.size(), face_count(mesh)));
-  for_each_face(mesh, [&](std::size_t f, std::span<const std::uint32_t> face, std::size_t) {
-    if (face.size() < 3) throw refuse(fmt::format("face {} has {} corners", f, face.size()));
-    for (const std::uint32_t v : face)
-      if (v >= mesh.positions.size()) throw refuse(fmt::format("face {} names vertex {}, which is none", f, v));
-  });
-  if (!mesh.vertex_ids.empty() && mesh.vertex_ids.size() != mesh.positions.size())
-    throw refuse(fmt::format("{} ids for {} vertices", mesh.vertex_ids.size(), mesh.positions.size()));
-  if (!mesh.face_colors.empty() && mesh.face_colors.size() != face_count(mesh))
-    throw refuse(fmt::format("{} colours for {} faces", mesh.face_colors.size(), face_count(mesh)));
-  for (const Attribute& attribute : mesh.attributes)
-    if (attribute.info.components == 0 || attribute.info.components > 16 ||
-        attribute.values.size() != count_of(mesh, attribute.info.of) * attribute.info.components)
-      throw refuse(
-          fmt::format("attribute '{}' has not one value for each {}", attribute.info.name, name_of(attribute.info.of)));
-}
+class OutputCheck {
+ public:
+  OutputCheck(const std::filesystem::path& file, Format format, const MeshOutput& mesh)
+      : file_(file), format_(format), mesh_(mesh) {}
+
+  void run() const {
+    check_coordinates();
+    check_faces();
+    check_count("ids", mesh_.vertex_ids.size(), mesh_.positions.size(), "vertices");
+    check_count("colours", mesh_.face_colors.size(), face_count(mesh_), "faces");
+    for (const Attribute& attribute : mesh_.attributes) check_attribute(attribute);
+  }
+
+ private:
+  [[nodiscard]] Error refuse(std::string_view what) const {
+    return Error(Errc::invalid_argument, what, file_.string(), "nothing was written");
+  }
+
+  void check_coordinates() const {
+    const bool floats = mesh_.scalar == Scalar::float32 || format_ == Format::stl;
+    const double largest = floats ? double{std::numeric_limits<float>::max()} : std::numeric_limits<double>::max();
+    for (std::size_t v = 0; v < mesh_.positions.size(); ++v)
+      for (int a = 0; a < 3; ++a)
+        if (!(std::abs(mesh_.positions[v][a]) <= largest))
+          throw refuse(fmt::format("vertex {} has a coordinate that {} cannot hold", v, floats ? "float32" : "a file"));
+  }
+
+  void check_faces() const {
+    std::size_t corners = 0;
+    for (std::size_t f = 0; f < mesh_.face_sizes.size(); ++f) {
+      if (mesh_.face_sizes[f] < 3) throw refuse(fmt::format("face {} has {} corners", f, mesh_.face_sizes[f]));
+      corners += mesh_.face_sizes[f];
+    }
+    if (mesh_.face_sizes.empty() ? mesh_.corners.size() % 3 != 0 : corners != mesh_.corners.size())
+      throw refuse(fmt::format("{} corners, which are not those of {} faces", mesh_.corners.size(), face_count(mesh_)));
+    FaceWalk walk(mesh_);
+    for (std::size_t f = 0; f < face_count(mesh_); ++f)
+      for (auto [c, end] = walk.next(); c < end; ++c)
+        if (mesh_.corners[c] >= mesh_.positions.size())
+          throw refuse(fmt::format("face {} names vertex {}, which is none", f, mesh_.corners[c]));
+  }
+
+  void check_count(std::string_view what, std::size_t count, std::size_t expected, std::string_view of) const {
+    if (count && count != expected) throw refuse(fmt::format("{} {} for {} {}", count, what, expected, of));
+  }
+
+  void check_attribute(const Attribute& attribute) const {
+    const AttributeInfo& info = attribute.info;
+    const auto refuse_it = [&](std::string_view what) {
+      return refuse(fmt::format("attribute '{}' {}", shown(info.name), what));
+    };
+    if (info.components < 1 || info.components > kMostComponents)
+      throw refuse_it(fmt::format("has {} components", info.components));
+    if (!info.fields.empty() && info.fields.size() != info.components)
+      throw refuse_it(fmt::format("has {} fields for {} components", info.fields.size(), info.components));
+    const std::size_t count = info.of == AttributeOf::vertex   ? mesh_.positions.size()
+                              : info.of == AttributeOf::corner ? mesh_.corners.size()
+                                                               : face_count(mesh_);
+    if (attribute.values.size() != count * info.components)
+      throw refuse_it(
+          fmt::format("has {} numbers for {} values of {}", attribute.values.size(), count, info.components));
+    const NumberRange range = range_of(info.type);
+    for (const double value : attribute.values)
+      if (!range.holds(value)) throw refuse_it(fmt::format("holds {}, which is none of its type", value));
+    if (info.names.empty()) return;
+    for (const double value : attribute.values)
+      if (value >= static_cast<double>(info.names.size()))
+        throw refuse_it(fmt::format("names number {} of {}", value, info.names.size()));
+  }
+
+  const std::filesystem::path& file_;
+  Format format_;
+  const MeshOutput& mesh_;
+};
 
 }  // namespace
 
-Dropped dropped_attribute(const Attribute& attribute) {
-  return {fmt::format("{} attribute '{}' ({})", name_of(attribute.info.of), attribute.info.name,
-                      name_of(attribute.info.type)),
-          attribute.count()};
-}
-
-void write_number(NewFile& out, NumberType type, double number) {
-  if (std::isnan(number)) return out.text(is_float(type) ? "nan" : "0");
-  if (is_float(type)) return out.number(number, type == NumberType::float32 ? Scalar::float32 : Scalar::float64);
-  out.whole(static_cast<std::int64_t>(number));
-}
-
 std::vector<Dropped> write_mesh(const std::filesystem::path& file, Format format, const MeshOutput& mesh, bool ascii) {
-  check(file, format, mesh);
+  OutputCheck(file, format, mesh).run();
+  DroppedCounter dropped;
   NewFile out(file);
-  std::vector<Dropped> dropped;
   switch (format) {
     case Format::ply:
-      dropped = write_ply(out, mesh, ascii);
+      write_ply(out, mesh, ascii, dropped);
       break;
     case Format::obj:
-      dropped = write_obj(out, mesh);
+      write_obj(out, mesh, dropped);
       break;
     case Format::off:
-      dropped = write_off(out, mesh);
+      write_off(out, mesh, dropped);
       break;
     case Format::stl:
-      dropped = write_stl(out, mesh);
+      write_stl(out, mesh, dropped);
       break;
   }
   out.commit();
-  return dropped;
+  return dropped.take();
 }
 
 }  // namespace ramcdb::mesh_file

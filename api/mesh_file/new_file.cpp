@@ -5,22 +5,57 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <charconv>
+#include <cmath>
 
 #include "ramcdb/error.h"
 
 namespace ramcdb::mesh_file {
 
 NewFile::NewFile(const std::filesystem::path& file)
-    : file_(file.string()), temporary_(fmt::format("{}.{}.tmp", file_, ::getpid())) {
+    : file_(file.string()), temporary_(fmt::format("{}.{}.tmp", file_, ::getpid())), buffer_(kBlock) {
   descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail();
-  buffer_.reserve(kBlock + 1024);
 }
 
 NewFile::~NewFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
   if (!committed_) ::unlink(temporary_.c_str());
+}
+
+namespace {
+
+using Digits = std::array<char, 40>;
+
+std::string_view to_text(Digits& digits, double value, NumberType type) {
+  if (std::isnan(value)) return "nan";
+  char *const begin = digits.data(), *const end = begin + digits.size();
+  const auto written = type == NumberType::float32   ? std::to_chars(begin, end, static_cast<float>(value))
+                       : type == NumberType::float64 ? std::to_chars(begin, end, value)
+                                                     : std::to_chars(begin, end, static_cast<std::int64_t>(value));
+  return {begin, static_cast<std::size_t>(written.ptr - begin)};
+}
+
+}  // namespace
+
+void NewFile::number(double value, NumberType type) {
+  Digits digits;
+  text(to_text(digits, value, type));
+}
+
+void NewFile::fraction(double value, NumberType type) {
+  Digits digits;
+  const std::string_view words = to_text(digits, value, type);
+  text(words);
+  if (words.find_first_not_of("0123456789-") == words.npos) text(".0");
+}
+
+void NewFile::whole(std::uint64_t value) {
+  std::array<char, 24> digits;
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  text({digits.data(), static_cast<std::size_t>(end - digits.data())});
 }
 
 void NewFile::commit() {
@@ -34,14 +69,19 @@ void NewFile::commit() {
 }
 
 void NewFile::flush() {
-  for (std::size_t done = 0; done < buffer_.size();) {
-    const ssize_t n = ::write(descriptor_, buffer_.data() + done, buffer_.size() - done);
+  for (std::size_t done = 0; done < used_;) {
+    const ssize_t n = ::write(descriptor_, buffer_.data() + done, used_ - done);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) fail();
     done += static_cast<std::size_t>(n);
     written_ += static_cast<std::uint64_t>(n);
   }
-  buffer_.clear();
+  used_ = 0;
+}
+
+void NewFile::make_room(std::size_t bytes) {
+  flush();
+  if (bytes > buffer_.size()) buffer_.resize(bytes);
 }
 
 void NewFile::fail() const {
@@ -50,7 +90,7 @@ void NewFile::fail() const {
     struct statvfs space {};
     ::statvfs(temporary_.c_str(), &space);
     throw Error(Errc::disk_full,
-                fmt::format("disk full: need more than {} bytes, have {}", written_ + buffer_.size(),
+                fmt::format("disk full: need more than {} bytes, have {}", written_ + used_,
                             written_ + space.f_bavail * space.f_frsize),
                 file_, "free space or write elsewhere; nothing was changed");
   }

@@ -1,17 +1,18 @@
 #pragma once
 
-#include <array>
-#include <charconv>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "api/mesh_file/mesh_file.h"
+#include "ramcdb/attributes.h"
 
 namespace ramcdb::mesh_file {
 
-/// A file that appears whole, when commit() is called, or not at all.
+/// A file that appears whole, when commit() is called, or not at all. Written through a buffer; throws disk_full and
+/// storage.
 class NewFile {
  public:
   explicit NewFile(const std::filesystem::path& file);
@@ -20,28 +21,21 @@ class NewFile {
   NewFile& operator=(const NewFile&) = delete;
 
   void text(std::string_view words) {
-    buffer_.append(words);
-    if (buffer_.size() >= kBlock) flush();
+    if (words.size() > buffer_.size() - used_) make_room(words.size());
+    std::memcpy(buffer_.data() + used_, words.data(), words.size());
+    used_ += words.size();
   }
   template <class T>
   void binary(T value) {
-    std::array<char, sizeof(T)> bytes;
-    std::memcpy(bytes.data(), &value, sizeof(T));
-    text({bytes.data(), bytes.size()});
+    if (sizeof(T) > buffer_.size() - used_) make_room(sizeof(T));
+    std::memcpy(buffer_.data() + used_, &value, sizeof(T));
+    used_ += sizeof(T);
   }
   /// The shortest text that reads back as the same number of this type.
-  void number(double value, Scalar scalar) {
-    std::array<char, 40> digits;
-    const auto end = scalar == Scalar::float32
-                         ? std::to_chars(digits.data(), digits.data() + digits.size(), static_cast<float>(value)).ptr
-                         : std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-    text({digits.data(), static_cast<std::size_t>(end - digits.data())});
-  }
-  void whole(std::int64_t value) {
-    std::array<char, 24> digits;
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-    text({digits.data(), static_cast<std::size_t>(end - digits.data())});
-  }
+  void number(double value, NumberType type);
+  /// As `number` of a float, never as a whole number: 1.0.
+  void fraction(double value, NumberType type);
+  void whole(std::uint64_t value);
 
   void commit();
 
@@ -49,9 +43,12 @@ class NewFile {
   static constexpr std::size_t kBlock = 1 << 20;
 
   void flush();
+  void make_room(std::size_t bytes);
   [[noreturn]] void fail() const;
 
-  std::string file_, temporary_, buffer_;
+  std::string file_, temporary_;
+  std::vector<char> buffer_;
+  std::size_t used_ = 0;  ///< of the buffer
   int descriptor_ = -1;
   std::uint64_t written_ = 0;
   bool committed_ = false;

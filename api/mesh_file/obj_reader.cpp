@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
-#include "api/mesh_file/file_bytes.h"
-#include "api/mesh_file/obj_attributes.h"
+#include <charconv>
+#include <limits>
 
-/// Wavefront OBJ: `v`, `vt`, `vn` and `f` lines, and what switches the state of the faces behind: usemtl, g, o, s. A
-/// corner is v, v/t, v//n or v/t/n, counted from 1, or from the newest backwards.
+#include "api/mesh_file/obj_tables.h"
+
+/// Wavefront OBJ. A corner is v, v/t, v//n or v/t/n, counted from 1, or from the newest backwards. Kept: positions and
+/// colours of `v`, faces, `vt`, `vn`, materials, groups, objects, smoothing, and the names of material libraries.
 namespace ramcdb::mesh_file {
 namespace {
 
@@ -24,11 +26,11 @@ class ObjReader {
       else if (keyword == "f")
         read_face();
       else if (keyword == "vt")
-        read_texture();
+        textures_.read_line(scan_);
       else if (keyword == "vn")
-        read_normal();
+        normals_.read_line(scan_);
       else
-        read_state(keyword);
+        read_other(keyword);
     }
     if (!mesh_.corners.empty() && largest_ >= mesh_.positions.size())
       throw bad_line(file_, largest_line_,
@@ -42,131 +44,119 @@ class ObjReader {
     Point p;
     for (int a = 0; a < 3; ++a) p[a] = scan_.number("a coordinate");
     mesh_.positions.push_back(p);
-    std::string_view word = scan_.word();
-    if (word.empty()) return;
-    double extra[4] = {};
-    std::size_t count = 0;
-    for (; !word.empty(); word = scan_.word(), ++count)
-      if (count < 4) extra[count] = scan_.parse_number(word, "a colour");
-    if (count == 1 || count == 4) dropped_.add("vertex weights");
-    if (count < 3) return;
-    ++colored_;
-    colors_.insert(colors_.end(), extra + (count == 4), extra + 3 + (count == 4));
+    constexpr std::size_t kColor = 3;
+    std::string_view words[kColor];
+    std::size_t extra = 0;
+    for (std::string_view word; !(word = scan_.word()).empty(); ++extra)
+      if (extra < kColor) words[extra] = word;
+    if (extra == kColor) return add_color(words);
+    if (extra > kColor) dropped_.add("vertex colours");
+    if (extra == 1 || extra == 4) dropped_.add("vertex weights");
   }
 
-  void read_texture() {
-    double value[3] = {scan_.number("a texture coordinate")};
-    for (std::size_t k = 1; k < 3; ++k) {
-      const std::string_view word = scan_.word();
-      if (word.empty()) break;
-      value[k] = scan_.parse_number(word, "a texture coordinate");
-    }
-    textures_.add(value[0], value[1], value[2]);
-  }
-
-  void read_normal() {
-    double value[3];
-    for (double& number : value) number = scan_.number("a normal");
-    normals_.add(value[0], value[1], value[2]);
+  void add_color(const std::string_view (&words)[3]) {
+    colors_.resize(3 * (mesh_.positions.size() - 1), kNone);
+    for (const std::string_view word : words) colors_.push_back(scan_.parse_value(word, NumberType::float64));
   }
 
   void read_face() {
     std::uint32_t corners = 0;
-    for (std::string_view word; !(word = scan_.word()).empty(); ++corners) read_corner(word);
+    for (std::string_view word; !(word = scan_.word()).empty(); ++corners) {
+      const std::size_t slash = word.find('/');
+      mesh_.corners.push_back(index(word.substr(0, slash)));
+      if (slash != word.npos) read_indices(word.substr(slash + 1));
+    }
     if (corners < 3) throw scan_.bad(fmt::format("a face has {} corners", corners));
     end_face(mesh_, corners);
+    ++faces_;
   }
 
-  void read_corner(std::string_view word) {
-    const std::size_t corner = mesh_.corners.size(), slash = word.find('/');
-    mesh_.corners.push_back(vertex_index(word.substr(0, slash)));
-    if (slash == std::string_view::npos) {
-      textures_.set_corner(corner, obj::IndexedValues::kNone, 0);
-      normals_.set_corner(corner, obj::IndexedValues::kNone, 0);
-      return;
-    }
-    const std::string_view rest = word.substr(slash + 1);
-    const std::size_t second = rest.find('/');
-    textures_.set_corner(corner, value_index(rest.substr(0, second), textures_.count()), scan_.line());
-    const std::string_view normal = second == std::string_view::npos ? std::string_view() : rest.substr(second + 1);
-    normals_.set_corner(corner, value_index(normal, normals_.count()), scan_.line());
+  /// "t", "t/n" or "/n" of the newest corner.
+  void read_indices(std::string_view words) {
+    const std::size_t corner = mesh_.corners.size() - 1, slash = words.find('/');
+    if (const auto texture = words.substr(0, slash); !texture.empty()) textures_.read_index(scan_, texture, corner);
+    if (slash == words.npos) return;
+    if (const auto normal = words.substr(slash + 1); !normal.empty()) normals_.read_index(scan_, normal, corner);
   }
 
-  /// Vertices may follow their faces, so that a large index is judged at the end of the file; a relative one is not.
-  std::uint32_t index(std::string_view word, std::size_t so_far, const char* what) {
-    const std::int64_t i = scan_.parse_integer(word, what);
-    const std::int64_t v = i < 0 ? static_cast<std::int64_t>(so_far) + i : i - 1;
+  std::uint32_t index(std::string_view word) {
+    const std::int64_t i = scan_.parse_integer(word, "a vertex index");
+    const auto count = static_cast<std::int64_t>(mesh_.positions.size());
+    const std::int64_t v = i < 0 ? count + i : i - 1;
+    // Vertices may follow their faces, so that a large index is judged at the end of the file; a relative one is not.
     if (i == 0 || v < 0 || v > 0xfffffffd)
-      throw scan_.bad(fmt::format("{} {} does not exist ({} so far)", what, i, so_far));
+      throw scan_.bad(fmt::format("vertex index {} does not exist ({} vertices so far)", i, count));
+    if (v > largest_ || !largest_line_) {
+      largest_ = static_cast<std::uint32_t>(v);
+      largest_line_ = scan_.line();
+    }
     return static_cast<std::uint32_t>(v);
   }
 
-  std::uint32_t vertex_index(std::string_view word) {
-    const std::uint32_t v = index(word, mesh_.positions.size(), "vertex index");
-    if (v > largest_ || !largest_line_) {
-      largest_ = v;
-      largest_line_ = scan_.line();
-    }
-    return v;
-  }
-
-  std::uint32_t value_index(std::string_view word, std::size_t so_far) {
-    if (word.empty()) return obj::IndexedValues::kNone;
-    if (so_far == 0 && word[0] == '-') return 0;  // dangling, as in files without any values
-    return index(word, so_far, "texture or normal index");
-  }
-
-  void read_state(std::string_view keyword) {
-    const std::size_t faces = mesh_.face_count();
+  void read_other(std::string_view keyword) {
     if (keyword == "usemtl")
-      materials_.switch_to(rest_of_line(), faces);
+      materials_.set(scan_.rest(), faces_);
     else if (keyword == "g")
-      groups_.switch_to(rest_of_line(), faces);
+      groups_.set(scan_.rest(), faces_);
     else if (keyword == "o")
-      objects_.switch_to(rest_of_line(), faces);
+      objects_.set(scan_.rest(), faces_);
     else if (keyword == "s")
-      read_smoothing(faces);
+      read_smoothing(scan_.rest());
     else if (keyword == "mtllib")
-      mesh_.references.push_back("mtllib " + rest_of_line());
+      mesh_.references.push_back(fmt::format("mtllib {}", scan_.rest()));
     else
       dropped_.add(fmt::format("'{}' lines", shown(keyword)));
   }
 
-  void read_smoothing(std::size_t faces) {
-    const std::string_view word = scan_.word();
-    const std::int64_t number = word == "off" || word.empty() ? 0 : scan_.parse_integer(word, "a smoothing group");
-    if (number < 0 || number > 0xffffffff) throw scan_.bad(fmt::format("{} is no smoothing group", number));
-    smoothing_.switch_to(static_cast<std::uint32_t>(number), faces);
-  }
-
-  std::string rest_of_line() {
-    std::string rest;
-    for (std::string_view word; !(word = scan_.word()).empty();) rest.append(rest.empty() ? "" : " ").append(word);
-    return rest;
+  void read_smoothing(std::string_view group) {
+    std::uint32_t value = 0;
+    const auto [end, error] = std::from_chars(group.data(), group.data() + group.size(), value);
+    if (group == "off" || (error == std::errc() && end == group.data() + group.size()))
+      smoothing_.set(value, faces_);
+    else
+      dropped_.add("'s' lines");
   }
 
   void hand_over() {
-    if (colored_ == mesh_.positions.size() && colored_)
-      mesh_.attributes.push_back(
-          {{"color", AttributeOf::vertex, NumberType::float64, 3, Meaning::color, {}, {}}, std::move(colors_)});
-    else if (colored_)
-      dropped_.add("vertex colours, which not all vertices have", colored_);
-    textures_.hand_over(file_, mesh_, dropped_);
-    normals_.hand_over(file_, mesh_, dropped_);
-    for (obj::FaceState* state : {&materials_, &groups_, &objects_, &smoothing_}) state->hand_over(mesh_);
-    dropped_.hand_over(mesh_);
+    if (!colors_.empty()) {
+      colors_.resize(3 * mesh_.positions.size(), kNone);
+      add("color", AttributeOf::vertex, NumberType::float64, 3, Meaning::color).values = std::move(colors_);
+    }
+    textures_.hand_over("texture", Meaning::texture, mesh_, dropped_);
+    normals_.hand_over("normal", Meaning::normal, mesh_, dropped_);
+    objects_.hand_over("object", Meaning::group, "objects (o)", mesh_, dropped_);
+    groups_.hand_over("group", Meaning::group, "groups (g)", mesh_, dropped_);
+    materials_.hand_over("material", Meaning::material, "materials (usemtl)", mesh_, dropped_);
+    if (smoothing_.used()) {
+      add("smoothing", AttributeOf::face, NumberType::uint32, 1, Meaning::other).values = smoothing_.values(faces_);
+      dropped_.add("'s' lines", smoothing_.unused());
+    }
+    mesh_.dropped = dropped_.take();
   }
+
+  Attribute& add(std::string_view name, AttributeOf of, NumberType type, std::uint8_t components, Meaning meaning) {
+    Attribute attribute;
+    attribute.info.name = name;
+    attribute.info.of = of;
+    attribute.info.type = type;
+    attribute.info.components = components;
+    attribute.info.meaning = meaning;
+    mesh_.attributes.push_back(std::move(attribute));
+    return mesh_.attributes.back();
+  }
+
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
   const FileBytes& file_;
   TextScanner scan_;
   MeshData& mesh_;
   std::uint32_t largest_ = 0;  ///< vertex index so far, and where it stands
   std::size_t largest_line_ = 0;
-  std::size_t colored_ = 0;  ///< vertices with a colour
-  std::vector<double> colors_;
-  obj::IndexedValues textures_{"texture", Meaning::texture}, normals_{"normal", Meaning::normal};
-  obj::FaceState materials_{"material", Meaning::material}, groups_{"group", Meaning::group},
-      objects_{"object", Meaning::group}, smoothing_{"smoothing", Meaning::other};
+  std::size_t faces_ = 0;
+  std::vector<double> colors_;  ///< three per vertex, as far as there are any
+  CornerTable textures_{"texture coordinates (vt)", 1, 3}, normals_{"normals (vn)", 3, 3};
+  NameSwitch materials_, groups_, objects_;
+  FaceSwitch smoothing_;
   DroppedCounter dropped_;
 };
 

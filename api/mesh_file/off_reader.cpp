@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
-#include "api/mesh_file/file_bytes.h"
+#include "api/mesh_file/off_values.h"
 
-/// OFF and its prefixes: [ST][C][N][4][n]OFF, then counts of vertices, faces and edges, then a line per vertex and per
-/// face. Behind the three coordinates stand normal, colour and texture coordinates, as the prefixes say, behind the
-/// corners of a face its colour: 3 or 4 numbers, whole ones to 255 or others to 1. What else there is, is dropped by
-/// name, and so are colours that only some have.
+/// OFF and its prefixes: [ST][C][N]OFF, then counts of vertices, faces and edges, then a line per vertex and per face.
+/// Behind its coordinates a vertex has a normal, a colour and texture coordinates, as the prefixes say; behind its
+/// corners a face may have a colour.
 namespace ramcdb::mesh_file {
 namespace {
 
@@ -33,58 +33,6 @@ Layout parse_keyword(const TextScanner& scan, std::string_view keyword) {
   return layout;
 }
 
-/// Values of vertices or faces that have equally many numbers, gathered one after another.
-class Column {
- public:
-  void begin() { size_ = 0; }
-  void add(std::string_view word, double number) {
-    values_.push_back(number);
-    whole_ &= word.find_first_not_of("0123456789") == std::string_view::npos && number <= 255;
-    ++size_;
-  }
-  /// Values of another length than the first one's are not kept at all.
-  void end() {
-    if (size_ == 0) return;
-    ++count_;
-    if (components_ == 0) components_ = size_;
-    even_ &= size_ == components_;
-  }
-  [[nodiscard]] std::uint64_t count() const { return count_; }
-
-  /// False when not every one of `expected` has one.
-  bool hand_over(MeshData& mesh, std::string name, AttributeOf of, Meaning meaning, std::size_t expected) {
-    const bool is_color = meaning == Meaning::color;
-    if (count_ != expected || !even_ || (is_color ? components_ < 3 || components_ > 4 : components_ > 4)) return false;
-    if (is_color && components_ == 4) drop_full_alpha();
-    Attribute attribute;
-    attribute.info.name = std::move(name);
-    attribute.info.of = of;
-    attribute.info.type = is_color && whole_ ? NumberType::uint8 : NumberType::float64;
-    attribute.info.components = static_cast<std::uint8_t>(components_);
-    attribute.info.meaning = meaning;
-    attribute.values = std::move(values_);
-    mesh.attributes.push_back(std::move(attribute));
-    return true;
-  }
-
- private:
-  /// An alpha that is 255 (or 1) everywhere is the format's, not the mesh's.
-  void drop_full_alpha() {
-    const double full = whole_ ? 255 : 1;
-    for (std::size_t i = 3; i < values_.size(); i += 4)
-      if (values_[i] != full) return;
-    for (std::size_t i = 0; 4 * i < values_.size(); ++i)
-      for (std::size_t k = 0; k < 3; ++k) values_[3 * i + k] = values_[4 * i + k];
-    values_.resize(values_.size() / 4 * 3);
-    components_ = 3;
-  }
-
-  std::vector<double> values_;
-  std::size_t components_ = 0, size_ = 0;
-  std::uint64_t count_ = 0;
-  bool whole_ = true, even_ = true;
-};
-
 class OffReader {
  public:
   OffReader(const FileBytes& file, MeshData& mesh, const Progress& progress)
@@ -104,20 +52,11 @@ class OffReader {
     const std::size_t faces = count(scan_.integer_anywhere("the number of faces"), 2);
     (void)scan_.word();  // the number of edges, which nobody needs and some leave out
     mesh_.positions.reserve(vertices);
-    for (std::size_t v = 0; v < vertices; ++v) read_vertex(layout);
+    for (std::size_t v = 0; v < vertices; ++v) read_vertex(layout, v);
     mesh_.corners.reserve(3 * faces);
-    for (std::size_t f = 0; f < faces; ++f) read_face(vertices);
+    for (std::size_t f = 0; f < faces; ++f) read_face(vertices, f);
     if (!scan_.word_anywhere().empty()) dropped_.add("text behind the last face");
-    const auto keep = [&](Column& column, const char* name, AttributeOf of, Meaning meaning, std::size_t expected,
-                          const char* what) {
-      if (column.count() && !column.hand_over(mesh_, name, of, meaning, expected)) dropped_.add(what, column.count());
-    };
-    keep(normals_, "normal", AttributeOf::vertex, Meaning::normal, vertices, "vertex normals");
-    keep(colors_, "color", AttributeOf::vertex, Meaning::color, vertices, "vertex colours");
-    keep(textures_, "texture", AttributeOf::vertex, Meaning::texture, vertices, "texture coordinates");
-    keep(face_colors_, colors_.count() ? "face.color" : "color", AttributeOf::face, Meaning::color, faces,
-         "face colours");
-    dropped_.hand_over(mesh_);
+    hand_over(faces);
   }
 
  private:
@@ -128,31 +67,31 @@ class OffReader {
     return static_cast<std::size_t>(n);
   }
 
-  void read_vertex(const Layout& layout) {
+  /// What is left of the line, its first kMostWords in words_.
+  std::size_t read_words() {
+    std::size_t n = 0;
+    for (std::string_view word; !(word = scan_.word()).empty(); ++n)
+      if (n < kMostWords) words_[n] = word;
+    return n;
+  }
+
+  void read_vertex(const Layout& layout, std::size_t v) {
     Point p;
     for (int a = 0; a < 3; ++a) p[a] = scan_.number_anywhere("a coordinate");
     mesh_.positions.push_back(p);
-    std::string_view word = scan_.word();
-    if (word.empty()) return;
-    if (layout.normal) word = read_numbers(normals_, word, 3);
-    if (layout.color) word = read_numbers(colors_, word, layout.texture ? 4 : 99);
-    if (layout.texture) word = read_numbers(textures_, word, 99);
-    if (word.empty()) return;
-    while (!scan_.word().empty()) {
-    }
-    dropped_.add("further numbers behind vertices");
+    const std::size_t n = read_words();
+    if (n == 0) return;
+    const std::size_t normal = layout.normal ? kNormal : 0, texture = layout.texture ? kTexture : 0;
+    const std::size_t color = n - std::min(n, normal + texture);
+    const bool fits = layout.color ? color == kRgb || color == kRgba : n == normal + texture;
+    if (!fits) return dropped_.add("vertices with more or fewer numbers than the file's first word says");
+    const std::span<const std::string_view> words(words_);
+    if (normal) normals_.set(scan_, v, words.first(normal));
+    if (color) colors_.set(scan_, v, words.subspan(normal, color));
+    if (texture) textures_.set(scan_, v, words.subspan(normal + color, texture));
   }
 
-  /// Up to `most` numbers of the line, from `word` on; returns the word behind them.
-  std::string_view read_numbers(Column& column, std::string_view word, std::size_t most) {
-    column.begin();
-    for (std::size_t n = 0; n < most && !word.empty(); ++n, word = scan_.word())
-      column.add(word, scan_.parse_number(word, "a number behind a vertex or face"));
-    column.end();
-    return word;
-  }
-
-  void read_face(std::size_t vertices) {
+  void read_face(std::size_t vertices, std::size_t f) {
     const std::int64_t corners = scan_.integer_anywhere("the number of corners of a face");
     if (corners < 3) throw scan_.bad(fmt::format("a face has {} corners", corners));
     if (static_cast<std::uint64_t>(corners) > size_) throw scan_.bad("a face has more corners than the file has bytes");
@@ -163,15 +102,33 @@ class OffReader {
       mesh_.corners.push_back(static_cast<std::uint32_t>(v));
     }
     end_face(mesh_, static_cast<std::uint32_t>(corners));
-    const std::string_view word = scan_.word();
-    if (!word.empty()) (void)read_numbers(face_colors_, word, 99);
+    const std::size_t n = read_words();
+    if (n == kRgb || n == kRgba)
+      face_colors_.set(scan_, f, std::span<const std::string_view>(words_).first(n));
+    else if (n == 1)
+      dropped_.add("face colours that are numbers of a colour map");
+    else if (n)
+      dropped_.add("further numbers behind faces");
   }
+
+  void hand_over(std::size_t faces) {
+    colors_.hand_over(AttributeOf::vertex, mesh_.positions.size(), mesh_, dropped_);
+    normals_.hand_over("normal", Meaning::normal, mesh_);
+    textures_.hand_over("texture", Meaning::texture, mesh_);
+    face_colors_.hand_over(AttributeOf::face, faces, mesh_, dropped_);
+    mesh_.dropped = dropped_.take();
+  }
+
+  static constexpr std::size_t kNormal = 3, kTexture = 2, kRgb = 3, kRgba = 4;
+  static constexpr std::size_t kMostWords = kNormal + kRgba + kTexture;
 
   TextScanner scan_;
   MeshData& mesh_;
   std::size_t size_;
+  std::array<std::string_view, kMostWords> words_;
+  OffRows normals_{kNormal}, textures_{kTexture};
+  OffColors colors_, face_colors_;
   DroppedCounter dropped_;
-  Column normals_, colors_, textures_, face_colors_;
 };
 
 }  // namespace

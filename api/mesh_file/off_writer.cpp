@@ -2,87 +2,99 @@
 
 #include "api/mesh_file/writers.h"
 
+/// OFF, with the prefixes of what vertices have: ST texture coordinates, C colours, N normals. The numbers come behind
+/// the coordinates in the other order.
 namespace ramcdb::mesh_file {
 namespace {
 
-/// OFF with what its header word can say: normals (N), colours (C) and texture coordinates (ST) of vertices; colours of
-/// faces stand behind their corners.
 class OffWriter {
  public:
-  OffWriter(NewFile& out, const MeshOutput& mesh) : out_(out), mesh_(mesh) {
+  OffWriter(NewFile& out, const MeshOutput& mesh, DroppedCounter& dropped) : out_(out), mesh_(mesh) {
     for (const Attribute& attribute : mesh.attributes)
-      if (!take(attribute)) dropped_.push_back(dropped_attribute(attribute));
+      if (const Attribute** place = place_of(attribute.info); place && !*place)
+        *place = &attribute;
+      else
+        drop_attribute(dropped, attribute);
+    for (const std::string& reference : mesh.references) drop_reference(dropped, reference);
   }
 
-  std::vector<Dropped> run() {
+  void run() {
     out_.text(fmt::format("{}{}{}OFF\n{} {} 0\n", texture_ ? "ST" : "", color_ ? "C" : "", normal_ ? "N" : "",
                           mesh_.positions.size(), face_count(mesh_)));
-    for (std::size_t v = 0; v < mesh_.positions.size(); ++v) {
-      for (int a = 0; a < 3; ++a) {
-        if (a) out_.text(" ");
-        out_.number(mesh_.positions[v][a], mesh_.scalar);
+    for (std::size_t v = 0; v < mesh_.positions.size(); ++v) write_vertex(v);
+    FaceWalk walk(mesh_);
+    for (std::size_t f = 0; f < face_count(mesh_); ++f) {
+      const auto [begin, end] = walk.next();
+      out_.whole(end - begin);
+      for (std::size_t c = begin; c < end; ++c) {
+        out_.text(" ");
+        out_.whole(mesh_.corners[c]);
       }
-      for (const Attribute* attribute : {normal_, color_, texture_})
-        if (attribute) put(*attribute, v);
+      write_face_color(f);
       out_.text("\n");
     }
-    for_each_face(mesh_, [&](std::size_t f, std::span<const std::uint32_t> face, std::size_t) { write_face(f, face); });
-    return std::move(dropped_);
   }
 
  private:
-  bool take(const Attribute& attribute) {
-    const AttributeInfo& info = attribute.info;
-    const bool is_color = info.meaning == Meaning::color && (info.type == NumberType::uint8 || is_float(info.type));
-    if (info.of == AttributeOf::face && is_color && !face_color_ && mesh_.face_colors.empty()) {
-      face_color_ = &attribute;
-      return true;
-    }
-    if (info.of != AttributeOf::vertex) return false;
-    const Attribute*& slot = info.meaning == Meaning::normal ? normal_ : is_color ? color_ : texture_;
-    const bool known =
-        info.meaning == Meaning::normal || is_color || (info.meaning == Meaning::texture && info.components == 2);
-    if (!known || slot) return false;
-    slot = &attribute;
-    return true;
+  /// Where an attribute belongs; nullptr: nowhere.
+  const Attribute** place_of(const AttributeInfo& info) {
+    const bool color = info.meaning == Meaning::color && (info.components == 3 || info.components == 4);
+    if (info.of == AttributeOf::face) return color && mesh_.face_colors.empty() ? &face_color_ : nullptr;
+    if (info.of != AttributeOf::vertex) return nullptr;
+    if (color) return &color_;
+    if (info.meaning == Meaning::normal && info.components == 3) return &normal_;
+    if (info.meaning == Meaning::texture && info.components == 2) return &texture_;
+    return nullptr;
   }
 
-  /// Colours have four numbers where vertices have them.
-  void put(const Attribute& attribute, std::size_t at) {
-    for (const double number : value_of(attribute, at)) {
-      out_.text(" ");
-      if (is_float(attribute.info.type) && number == static_cast<double>(static_cast<std::int64_t>(number)))
-        out_.text(fmt::format("{}.0", static_cast<std::int64_t>(number)));  // so that it is not taken for 0..255
-      else
-        write_number(out_, attribute.info.type, number);
-    }
-    if (&attribute == color_ && attribute.info.components == 3)
-      out_.text(is_float(attribute.info.type) ? " 1.0" : " 255");
-  }
-
-  void write_face(std::size_t f, std::span<const std::uint32_t> face) {
-    out_.whole(static_cast<std::int64_t>(face.size()));
-    for (const std::uint32_t v : face) {
-      out_.text(" ");
-      out_.whole(v);
-    }
-    if (!mesh_.face_colors.empty()) {
-      const FaceColor c = mesh_.face_colors[f];
-      out_.text(fmt::format(" {} {} {}", c.r, c.g, c.b));
-    } else if (face_color_) {
-      put(*face_color_, f);
+  /// A vertex without any value has none; where another has one, what is missing is nan.
+  void write_vertex(std::size_t v) {
+    write_point(out_, mesh_.positions[v], number_type(mesh_.scalar));
+    bool any = false;
+    for (const Attribute* attribute : {normal_, color_, texture_}) any |= attribute && !is_none(*attribute, v);
+    if (any) {
+      if (normal_) write_value(*normal_, v);
+      if (color_) write_color(*color_, v);
+      if (texture_) write_value(*texture_, v);
     }
     out_.text("\n");
   }
 
+  void write_value(const Attribute& attribute, std::size_t i) {
+    const std::size_t n = attribute.info.components;
+    for (std::size_t k = 0; k < n; ++k) {
+      out_.text(" ");
+      out_.number(attribute.values[i * n + k], attribute.info.type);
+    }
+  }
+
+  /// Bytes as whole numbers, all others from 0.0 to 1.0.
+  void write_color(const Attribute& attribute, std::size_t i) {
+    const NumberType type = attribute.info.type;
+    if (type == NumberType::uint8) return write_value(attribute, i);
+    const std::size_t n = attribute.info.components;
+    for (std::size_t k = 0; k < n; ++k) {
+      out_.text(" ");
+      out_.fraction(unit_color(attribute.values[i * n + k], type), is_float(type) ? type : NumberType::float64);
+    }
+  }
+
+  void write_face_color(std::size_t f) {
+    if (!mesh_.face_colors.empty()) {
+      const FaceColor c = mesh_.face_colors[f];
+      out_.text(fmt::format(" {} {} {}", c.r, c.g, c.b));
+    } else if (face_color_ && !is_none(*face_color_, f)) {
+      write_color(*face_color_, f);
+    }
+  }
+
   NewFile& out_;
   const MeshOutput& mesh_;
-  const Attribute *texture_ = nullptr, *normal_ = nullptr, *color_ = nullptr, *face_color_ = nullptr;
-  std::vector<Dropped> dropped_;
+  const Attribute *color_ = nullptr, *normal_ = nullptr, *texture_ = nullptr, *face_color_ = nullptr;
 };
 
 }  // namespace
 
-std::vector<Dropped> write_off(NewFile& out, const MeshOutput& mesh) { return OffWriter(out, mesh).run(); }
+void write_off(NewFile& out, const MeshOutput& mesh, DroppedCounter& dropped) { OffWriter(out, mesh, dropped).run(); }
 
 }  // namespace ramcdb::mesh_file

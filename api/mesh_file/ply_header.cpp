@@ -16,8 +16,6 @@ std::optional<Type> type_of(std::string_view name) {
   return std::nullopt;
 }
 
-bool is_integer(Type type) { return type != Type::float32 && type != Type::float64; }
-
 Role role_of(const Element& element, const Property& p) {
   if (element.name == "vertex" && !p.count_type) {
     if (p.name == "x") return Role::x;
@@ -26,9 +24,10 @@ Role role_of(const Element& element, const Property& p) {
     if (p.name == "ramcdb_id_hi" && p.type == Type::uint32) return Role::id_high;
     if (p.name == "ramcdb_id_lo" && p.type == Type::uint32) return Role::id_low;
   }
-  if (element.name == "face" && p.count_type && is_integer(p.type) &&
+  if (element.name == "face" && p.count_type && !is_float(p.type) &&
       (p.name == "vertex_indices" || p.name == "vertex_index"))
     return Role::indices;
+  if (element.name == "face" && p.count_type && is_float(p.type) && p.name == "texcoord") return Role::texcoord;
   return Role::none;
 }
 
@@ -67,18 +66,14 @@ class HeaderReader {
     } else if (keyword == "property") {
       read_property();
     } else if (keyword == "comment") {
-      read_comment();
+      if (scan_.word() == "TextureFile") add_reference(scan_.rest());
     } else if (!keyword.empty() && keyword != "obj_info") {
       throw scan_.bad(fmt::format("unknown header line '{}'", shown(keyword)));
     }
   }
 
-  /// "comment TextureFile skin.png", as MeshLab writes it.
-  void read_comment() {
-    if (scan_.word() != "TextureFile") return;
-    std::string name;
-    for (std::string_view word; !(word = scan_.word()).empty();) name.append(name.empty() ? "" : " ").append(word);
-    if (!name.empty()) header_.textures.push_back(std::move(name));
+  void add_reference(std::string_view texture) {
+    if (!texture.empty()) header_.references.push_back(fmt::format("texture {}", texture));
   }
 
   void read_format(std::string_view name) {
@@ -107,7 +102,7 @@ class HeaderReader {
     std::string_view first = scan_.word();
     if (first == "list") {
       p.count_type = read_type();
-      if (!is_integer(*p.count_type)) throw scan_.bad("the count type of a list must be an integer");
+      if (is_float(*p.count_type)) throw scan_.bad("the count type of a list must be an integer");
       first = scan_.word();
     }
     const auto type = type_of(first);

@@ -7,20 +7,16 @@
 #include <string_view>
 #include <vector>
 
+#include "api/mesh_file/attribute_names.h"
 #include "api/mesh_file/file_bytes.h"
 
 /// What a PLY file says about itself, before its values.
 namespace ramcdb::mesh_file::ply {
 
-enum class Type { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
-
-[[nodiscard]] inline std::size_t size_of(Type type) {
-  constexpr std::size_t kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
-  return kSizes[static_cast<std::size_t>(type)];
-}
+using Type = NumberType;
 
 /// What becomes of a property.
-enum class Role { x, y, z, id_high, id_low, indices, none };
+enum class Role { x, y, z, id_high, id_low, indices, texcoord, none };
 
 struct Property {
   std::string name, type_name;
@@ -46,7 +42,7 @@ enum class Encoding { ascii, little, big };
 struct Header {
   std::optional<Encoding> encoding;
   std::vector<Element> elements;
-  std::vector<std::string> textures;  ///< files that comments name
+  std::vector<std::string> references;  ///< "texture skin.png", from comments
   std::size_t size = 0, lines = 0;
 
   [[nodiscard]] const Element* find(std::string_view name) const {

@@ -1,187 +1,157 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <limits>
 
-#include "api/mesh_file/ply_attributes.h"
+#include "api/mesh_file/ply_columns.h"
 #include "api/mesh_file/ply_values.h"
 
 /// PLY, text and both binary byte orders. Kept: x, y, z of the element "vertex"; the list vertex_indices (or
-/// vertex_index) of "face"; our own vertex ids; all other numbers of vertices and faces and the list texcoord of faces,
-/// as attributes. Everything else is skipped by its size and named.
+/// vertex_index) of "face"; our own vertex ids; every other number of vertices and faces, and the list "texcoord" of
+/// faces, as attributes. Other lists and elements are skipped by their size and named.
 namespace ramcdb::mesh_file {
 namespace {
 
 using namespace ply;
+using Kind = Target::Kind;
 
-/// Roles of numbers of a vertex, from x to the lower half of its id.
-constexpr std::size_t kRoles = 5;
-static_assert(kRoles == static_cast<std::size_t>(Role::indices));
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+/// Binary vertices are taken by so many bytes, property by property: they stay in the cache.
+constexpr std::size_t kBlockBytes = 1 << 14;
 
 template <class Values>
 class BodyReader {
  public:
   BodyReader(Values values, const Header& header, MeshData& mesh, const Progress& progress)
       : values_(std::move(values)),
-        header_(header),
-        vertices_(header.find("vertex")->count),
+        vertex_(*header.find("vertex")),
+        vertices_(vertex_.count),
         mesh_(mesh),
-        progress_(progress) {}
+        progress_(progress) {
+    // Vertices first: a face's attribute of the same name gets another.
+    vertex_targets_ = plan_columns(vertex_, mesh, dropped_);
+    if (const Element* face = header.find("face")) face_targets_ = plan_columns(*face, mesh, dropped_);
+  }
 
-  void run() {
-    for (const Element& element : header_.elements) {
-      columns_.assign(element.properties.size(), {});
-      if (element.name == "vertex" || element.name == "face") columns_ = plan_attributes(element, mesh_.attributes);
-      name_dropped(element);
+  void run(const Header& header) {
+    for (const Element& element : header.elements) {
       if (element.name == "vertex")
         read_vertices(element);
+      else if (element.name == "face")
+        read_faces(element);
       else
-        read_others(element);
+        skip_element(element);
     }
     if (!values_.at_end()) dropped_.add("bytes behind the last element");
-    for (const std::string& texture : header_.textures) mesh_.references.push_back("texture " + texture);
-    dropped_.hand_over(mesh_);
+    mesh_.dropped = dropped_.take();
   }
 
  private:
-  void name_dropped(const Element& element) {
-    if (element.name != "vertex" && element.name != "face") {
-      dropped_.add(fmt::format("element '{}'", shown(element.name)), element.count);
-      return;
-    }
-    for (const Property& p : element.properties)
-      if (p.role == Role::none && column_of(element, p).attribute == Column::kNone)
-        dropped_.add(fmt::format("{} property '{}' ({}{})", element.name, shown(p.name), p.count_type ? "list of " : "",
-                                 p.type_name),
-                     element.count);
-  }
-
-  [[nodiscard]] const Column& column_of(const Element& element, const Property& p) const {
-    return columns_[static_cast<std::size_t>(&p - element.properties.data())];
+  /// The count was checked against the file: every element takes some bytes.
+  void take_memory(const std::vector<Target>& targets, std::size_t count) {
+    for (const Target& target : targets)
+      if (target.kind == Kind::value) mesh_.attributes[target.attribute].values.resize(count * target.components);
   }
 
   void read_vertices(const Element& element) {
-    const bool ids = element.has(Role::id_high) && element.has(Role::id_low);
-    mesh_.positions.reserve(element.count);
-    if (ids) mesh_.vertex_ids.reserve(element.count);
+    mesh_.positions.resize(element.count);
+    if (has(vertex_targets_, Kind::id_half)) mesh_.vertex_ids.resize(element.count);
+    take_memory(vertex_targets_, element.count);
     if constexpr (Values::kBinary) {
       const bool fixed = std::none_of(element.properties.begin(), element.properties.end(),
                                       [](const Property& p) { return p.count_type.has_value(); });
-      if (fixed) return read_rows(element, ids);
+      if (fixed) return read_rows(element);
     }
-    for (std::uint64_t i = 0; i < element.count; ++i) {
-      double values[kRoles] = {};
-      for (const Property& p : element.properties)
-        if (p.role <= Role::z)
-          values[static_cast<std::size_t>(p.role)] = values_.number(p.type);
-        else if (p.role < Role::indices)
-          values[static_cast<std::size_t>(p.role)] = id_half(p.type);
-        else
-          read_other(p, column_of(element, p), i);
-      add_vertex(values, ids);
-      report(i, element.count);
+    for (std::size_t v = 0; v < element.count; ++v) {
+      for (std::size_t p = 0; p < element.properties.size(); ++p)
+        read_number(element.properties[p], vertex_targets_[p], v);
+      report(v, element.count);
     }
   }
 
-  /// A number of an attribute, or what is skipped.
-  void read_other(const Property& p, const Column& column, std::uint64_t i) {
-    if (column.attribute == Column::kNone) return skip(p);
-    const double number = values_.any_number(p.type);
-    const Range range = range_of(p.type);
-    if (!Values::kBinary && range.high < 1e300 &&
-        !(number >= range.low && number <= range.high &&
-          number == static_cast<double>(static_cast<std::int64_t>(number))))
-      values_.refuse(fmt::format("{} is no number of type {}", number, p.type_name));
-    Attribute& attribute = mesh_.attributes[column.attribute];
-    attribute.values[i * attribute.info.components + column.component] = number;
+  [[nodiscard]] static bool has(const std::vector<Target>& targets, Kind kind) {
+    return std::any_of(targets.begin(), targets.end(), [&](const Target& target) { return target.kind == kind; });
   }
 
-  double id_half(Type type) {
+  /// One property of vertex or face i, unless it is the list of corners or of their texture coordinates.
+  void read_number(const Property& p, const Target& target, std::size_t i) {
+    switch (target.kind) {
+      case Kind::axis:
+        mesh_.positions[i][target.axis] = values_.number(p.type);
+        break;
+      case Kind::id_half:
+        mesh_.vertex_ids[i] |= id_half(p.type) << target.axis;
+        break;
+      case Kind::value:
+        mesh_.attributes[target.attribute].values[i * target.components + target.component] = values_.value(p.type);
+        break;
+      default:
+        values_.skip(p.type, p.count_type ? values_.whole(*p.count_type) : 1);
+    }
+  }
+
+  std::uint64_t id_half(Type type) {
     const std::uint64_t half = values_.whole(type);
     if (half > 0xffffffffU) values_.refuse(fmt::format("{} is no half of a vertex id", half));
-    return static_cast<double>(half);
+    return half;
   }
 
-  /// Vertices of the same size each: the values that are kept stand at fixed places.
-  void read_rows(const Element& element, bool ids) {
-    struct Source {
-      std::size_t place;
-      Type type;
-      double* to;
-      std::size_t step;
-    };
-    std::vector<Source> others;
-    std::size_t size = 0, places[kRoles] = {};
-    Type types[kRoles] = {};
-    for (const Property& p : element.properties) {
-      if (const Column& column = column_of(element, p); column.attribute != Column::kNone) {
-        Attribute& attribute = mesh_.attributes[column.attribute];
-        others.push_back({size, p.type, attribute.values.data() + column.component, attribute.info.components});
+  /// Vertices of the same size each: the values of a property stand at fixed places.
+  void read_rows(const Element& element) {
+    std::size_t size = 0;
+    for (const Property& p : element.properties) size += size_of(p.type);
+    const std::size_t block = std::max<std::size_t>(kBlockBytes / size, 1);
+    for (std::size_t begin = 0; begin < element.count; begin += block) {
+      const std::size_t count = std::min<std::size_t>(block, element.count - begin);
+      const char* rows = values_.rows(count, size);
+      for (std::size_t p = 0; p < element.properties.size(); ++p) {
+        read_column(rows, size, begin, count, element.properties[p].type, vertex_targets_[p]);
+        rows += size_of(element.properties[p].type);
       }
-      if (p.role < Role::indices) {
-        places[static_cast<std::size_t>(p.role)] = size;
-        types[static_cast<std::size_t>(p.role)] = p.type;
-      }
-      size += size_of(p.type);
-    }
-    const std::size_t roles = ids ? kRoles : 3;
-    for (std::uint64_t i = 0; i < element.count; ++i) {
-      const char* row = values_.row(size);
-      double values[kRoles] = {};
-      for (std::size_t r = 0; r < roles; ++r) values[r] = Values::number_at(row + places[r], types[r]);
-      add_vertex(values, ids);
-      for (Source& other : others) {
-        *other.to = Values::number_at(row + other.place, other.type);
-        other.to += other.step;
-      }
-      report(i, element.count);
+      if (progress_) progress_(static_cast<double>(begin) / static_cast<double>(element.count));
     }
   }
 
-  /// From x, y, z and both halves of its id, which double holds.
-  void add_vertex(const double (&values)[kRoles], bool ids) {
-    mesh_.positions.push_back({values[0], values[1], values[2]});
-    if (ids)
-      mesh_.vertex_ids.push_back(static_cast<std::uint64_t>(values[3]) << 32 | static_cast<std::uint64_t>(values[4]));
-  }
-
-  void read_others(const Element& element) {
-    // As if all were triangles; the count was checked against the file.
-    if (element.name == "face") mesh_.corners.reserve(3 * element.count);
-    for (std::uint64_t i = 0; i < element.count; ++i) {
-      const std::size_t first = mesh_.corners.size();
-      for (const Property& p : element.properties) {
-        const Column& column = column_of(element, p);
-        if (p.role == Role::indices)
-          end_face(mesh_, read_corners(p));
-        else if (column.is_texture_list)
-          read_texture_list(p);
-        else
-          read_other(p, column, i);
-      }
-      end_texture_lists(element, mesh_.corners.size() - first);
-      report(i, element.count);
+  void read_column(const char* at, std::size_t stride, std::size_t begin, std::size_t count, Type type,
+                   const Target& target) {
+    if (target.kind == Kind::axis) {
+      Point* to = mesh_.positions.data() + begin;
+      const int axis = target.axis;
+      Values::column(at, stride, count, type, [=](std::size_t i, double value) { to[i][axis] = value; });
+    } else if (target.kind == Kind::id_half) {
+      std::uint64_t* to = mesh_.vertex_ids.data() + begin;
+      const int shift = target.axis;
+      Values::column(at, stride, count, type,
+                     [=](std::size_t i, double value) { to[i] |= static_cast<std::uint64_t>(value) << shift; });
+    } else if (target.kind == Kind::value) {
+      const std::size_t n = target.components;
+      double* to = mesh_.attributes[target.attribute].values.data() + begin * n + target.component;
+      Values::column(at, stride, count, type, [=](std::size_t i, double value) { to[i * n] = value; });
     }
   }
 
-  void read_texture_list(const Property& p) {
-    const std::uint64_t count = values_.whole(*p.count_type);
-    if (count > values_.left_for(p.type)) values_.refuse("the file is cut off");
-    texture_list_.clear();
-    for (std::uint64_t n = 0; n < count; ++n) texture_list_.push_back(values_.any_number(p.type));
-  }
-
-  /// Two numbers per corner; lists of another length say nothing.
-  void end_texture_lists(const Element& element, std::size_t corners) {
-    for (const Property& p : element.properties) {
-      const Column& column = column_of(element, p);
-      if (!column.is_texture_list) continue;
-      if (texture_list_.size() != 2 * corners) {
-        if (!texture_list_.empty()) dropped_.add("texture lists with another number of corners than their face");
-        texture_list_.assign(2 * corners, std::numeric_limits<double>::quiet_NaN());
+  void read_faces(const Element& element) {
+    // As if all were triangles.
+    mesh_.corners.reserve(3 * element.count);
+    take_memory(face_targets_, element.count);
+    for (const Target& target : face_targets_)
+      if (target.kind == Kind::texcoord) mesh_.attributes[target.attribute].values.reserve(6 * element.count);
+    for (std::size_t f = 0; f < element.count; ++f) {
+      std::uint32_t corners = 0;
+      const Target* texcoord = nullptr;
+      for (std::size_t i = 0; i < element.properties.size(); ++i) {
+        const Property& p = element.properties[i];
+        if (face_targets_[i].kind == Kind::indices) {
+          corners = read_corners(p);
+          end_face(mesh_, corners);
+        } else if (face_targets_[i].kind == Kind::texcoord) {
+          texcoord = &face_targets_[i];
+          read_texcoord(p);
+        } else {
+          read_number(p, face_targets_[i], f);
+        }
       }
-      auto& values = mesh_.attributes[column.attribute].values;
-      values.insert(values.end(), texture_list_.begin(), texture_list_.end());
+      if (texcoord) add_texcoord(mesh_.attributes[texcoord->attribute].values, 2 * std::size_t{corners});
+      report(f, element.count);
     }
   }
 
@@ -200,35 +170,60 @@ class BodyReader {
     return size;
   }
 
-  void skip(const Property& p) { values_.skip(p.type, p.count_type ? values_.whole(*p.count_type) : 1); }
+  /// The list may stand before the corners that it belongs to.
+  void read_texcoord(const Property& p) {
+    const std::uint64_t count = values_.whole(*p.count_type);
+    if (count > values_.left_for(p.type)) values_.refuse("the file is cut off");
+    texcoord_.resize(count);
+    values_.values(p.type, texcoord_);
+  }
+
+  /// Two numbers per corner; a list of another length belongs to no corner.
+  void add_texcoord(std::vector<double>& to, std::size_t count) {
+    if (texcoord_.size() == count) {
+      to.insert(to.end(), texcoord_.begin(), texcoord_.end());
+      return;
+    }
+    to.resize(to.size() + count, kNone);
+    if (!texcoord_.empty()) dropped_.add("lists 'texcoord' without two numbers per corner");
+  }
+
+  void skip_element(const Element& element) {
+    dropped_.add(fmt::format("element '{}'", shown(element.name)), element.count);
+    for (std::size_t i = 0; i < element.count; ++i) {
+      for (const Property& p : element.properties) read_number(p, {}, i);
+      report(i, element.count);
+    }
+  }
 
   void report(std::uint64_t i, std::uint64_t count) const {
     if (progress_ && i % 65536 == 0) progress_(static_cast<double>(i) / static_cast<double>(count));
   }
 
   Values values_;
-  const Header& header_;
+  const Element& vertex_;
   std::uint64_t vertices_;
   MeshData& mesh_;
   const Progress& progress_;
+  std::vector<Target> vertex_targets_, face_targets_;
+  std::vector<double> texcoord_;  ///< of the current face
   DroppedCounter dropped_;
-  std::vector<Column> columns_;  ///< of the element at hand
-  std::vector<double> texture_list_;
 };
 
 }  // namespace
 
 void read_ply(const FileBytes& file, MeshData& mesh, const Progress& progress) {
   const Header header = read_header(file);
+  mesh.references = header.references;
   switch (*header.encoding) {
     case Encoding::ascii:
-      BodyReader(AsciiValues(file, header, progress), header, mesh, progress).run();
+      BodyReader(AsciiValues(file, header, progress), header, mesh, progress).run(header);
       break;
     case Encoding::little:
-      BodyReader(BinaryValues<std::endian::little>(file, header), header, mesh, progress).run();
+      BodyReader(BinaryValues<std::endian::little>(file, header), header, mesh, progress).run(header);
       break;
     case Encoding::big:
-      BodyReader(BinaryValues<std::endian::big>(file, header), header, mesh, progress).run();
+      BodyReader(BinaryValues<std::endian::big>(file, header), header, mesh, progress).run(header);
       break;
   }
 }

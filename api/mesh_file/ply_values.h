@@ -17,11 +17,12 @@ class AsciiValues {
   AsciiValues(const FileBytes& file, const Header& header, const Progress& progress)
       : scan_(file, header.size, header.lines, progress) {}
 
+  /// A coordinate: finite, and the nearest double, whatever its type.
   double number(Type) { return scan_.number_anywhere("a value"); }
-  /// A number of an attribute: as its type holds it, and not always finite.
-  double any_number(Type type) {
-    const double value = scan_.any_number_anywhere("a value");
-    return type == Type::float32 ? static_cast<double>(static_cast<float>(value)) : value;
+  /// A number of its type.
+  double value(Type type) { return scan_.value_anywhere(type); }
+  void values(Type type, std::vector<double>& to) {
+    for (double& number : to) number = value(type);
   }
   std::uint64_t whole(Type) {
     const std::int64_t value = scan_.integer_anywhere("a value");
@@ -48,28 +49,37 @@ class BinaryValues {
 
   BinaryValues(const FileBytes& file, const Header& header) : file_(file), at_(header.size) {}
 
-  double number(Type type) { return number_at(take(size_of(type)), type); }
-  double any_number(Type type) { return number(type); }
-  static double number_at(const char* p, Type type) {
+  double number(Type type) {
+    double number = 0;
+    column(take(size_of(type)), 0, 1, type, [&](std::size_t, double value) { number = value; });
+    return number;
+  }
+  double value(Type type) { return number(type); }
+  void values(Type type, std::vector<double>& to) {
+    column(take(to.size() * size_of(type)), size_of(type), to.size(), type,
+           [&](std::size_t i, double value) { to[i] = value; });
+  }
+  /// The numbers of one property of `count` elements of `stride` bytes each: store(i, number).
+  template <class Store>
+  static void column(const char* p, std::size_t stride, std::size_t count, Type type, Store store) {
     switch (type) {
       case Type::float32:
-        return load<float>(p);
+        return column_of<float>(p, stride, count, store);
       case Type::float64:
-        return load<double>(p);
+        return column_of<double>(p, stride, count, store);
       case Type::int8:
-        return load<std::int8_t>(p);
+        return column_of<std::int8_t>(p, stride, count, store);
       case Type::uint8:
-        return load<std::uint8_t>(p);
+        return column_of<std::uint8_t>(p, stride, count, store);
       case Type::int16:
-        return load<std::int16_t>(p);
+        return column_of<std::int16_t>(p, stride, count, store);
       case Type::uint16:
-        return load<std::uint16_t>(p);
+        return column_of<std::uint16_t>(p, stride, count, store);
       case Type::int32:
-        return load<std::int32_t>(p);
+        return column_of<std::int32_t>(p, stride, count, store);
       case Type::uint32:
-        break;
+        return column_of<std::uint32_t>(p, stride, count, store);
     }
-    return load<std::uint32_t>(p);
   }
   std::uint64_t whole(Type type) {
     const char* p = take(size_of(type));
@@ -100,8 +110,8 @@ class BinaryValues {
   [[noreturn]] void refuse(std::string_view what) const { throw bad_byte(file_, at_, what); }
   [[nodiscard]] bool at_end() const { return at_ == file_.text().size(); }
 
-  /// The bytes of one element whose values have `bytes` in all.
-  const char* row(std::size_t bytes) { return take(bytes); }
+  /// The bytes of `count` elements of `bytes` each.
+  const char* rows(std::size_t count, std::size_t bytes) { return take(count * bytes); }
   /// The common case of a list: reads `count` indices of 32 bits and is true, or takes nothing and is false when they
   /// are of another type or one is not below `limit`. The file must have room for them.
   bool indices(Type type, std::size_t count, std::uint64_t limit, std::vector<std::uint32_t>& to) {
@@ -136,6 +146,10 @@ class BinaryValues {
     if (bytes > file_.text().size() - at_) refuse("the file is cut off");
     at_ += bytes;
     return file_.text().data() + at_ - bytes;
+  }
+  template <class T, class Store>
+  static void column_of(const char* p, std::size_t stride, std::size_t count, const Store& store) {
+    for (std::size_t i = 0; i < count; ++i) store(i, static_cast<double>(load<T>(p + i * stride)));
   }
   template <class T>
   static T load(const char* p) {

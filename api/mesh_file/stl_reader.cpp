@@ -42,6 +42,16 @@ void add_corner(MeshData& mesh, const Point& p) {
   mesh.positions.push_back(p);
 }
 
+/// The bytes behind each facet, which some programs keep a colour in.
+void add_attribute(MeshData& mesh, std::vector<double> values) {
+  Attribute attribute;
+  attribute.info.name = "attribute";
+  attribute.info.of = AttributeOf::face;
+  attribute.info.type = NumberType::uint16;
+  attribute.values = std::move(values);
+  mesh.attributes.push_back(std::move(attribute));
+}
+
 void read_binary(const FileBytes& file, MeshData& mesh, const Progress& progress) {
   const std::string_view text = file.text();
   const auto count = load<std::uint32_t>(text.data() + 80);
@@ -51,25 +61,22 @@ void read_binary(const FileBytes& file, MeshData& mesh, const Progress& progress
                                (text.size() - kHeader) / kRecord));
   mesh.positions.reserve(3 * std::size_t{count});
   mesh.corners.reserve(3 * std::size_t{count});
-  std::vector<double> attributes;
-  attributes.reserve(count);
-  bool any_attribute = false;
+  std::vector<double> attributes;  // none when all are zero
   for (std::uint32_t f = 0; f < count; ++f) {
     const char* at = text.data() + kHeader + kRecord * f;
     for (int c = 0; c < 3; ++c) {
       const char* p = at + 12 + 12 * c;
       add_corner(mesh, {load<float>(p), load<float>(p + 4), load<float>(p + 8)});
     }
-    attributes.push_back(load<std::uint16_t>(at + 48));
-    any_attribute |= attributes.back() != 0;
+    const auto attribute = load<std::uint16_t>(at + 48);
+    if (attribute && attributes.empty()) attributes.resize(count);
+    if (attribute) attributes[f] = attribute;
     if (progress && f % 65536 == 0) progress(static_cast<double>(f) / count);
   }
+  if (!attributes.empty()) add_attribute(mesh, std::move(attributes));
   DroppedCounter dropped;
-  if (any_attribute)
-    mesh.attributes.push_back(
-        {{"attribute", AttributeOf::face, NumberType::uint16, 1, Meaning::other, {}, {}}, std::move(attributes)});
   dropped.add("bytes behind the last facet", text.size() - kHeader - kRecord * std::size_t{count});
-  dropped.hand_over(mesh);
+  mesh.dropped = dropped.take();
 }
 
 void read_ascii(const FileBytes& file, MeshData& mesh, const Progress& progress) {

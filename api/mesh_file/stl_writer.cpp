@@ -1,10 +1,16 @@
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
+#include "api/mesh_file/triangulate.h"
 #include "api/mesh_file/writers.h"
 
+/// Binary STL: polygons as triangles, each with a normal of its own and its polygon's attribute bytes.
 namespace ramcdb::mesh_file {
 namespace {
+
+static_assert(std::endian::native == std::endian::little, "byte order of STL and PLY writers");
 
 /// The unit normal that STL wants, zero for triangles without area or too large for it.
 std::array<float, 3> facet_normal(const Point& a, const Point& b, const Point& c) {
@@ -15,43 +21,37 @@ std::array<float, 3> facet_normal(const Point& a, const Point& b, const Point& c
   return {static_cast<float>(nx / length), static_cast<float>(ny / length), static_cast<float>(nz / length)};
 }
 
-/// What the two bytes behind a facet hold.
-const Attribute* facet_attribute(const MeshOutput& mesh) {
-  for (const Attribute& attribute : mesh.attributes)
-    if (attribute.info.of == AttributeOf::face && attribute.info.name == "attribute" &&
-        attribute.info.type == NumberType::uint16 && attribute.info.components == 1)
-      return &attribute;
-  return nullptr;
+bool is_facet_bytes(const AttributeInfo& info) {
+  return info.name == "attribute" && info.of == AttributeOf::face && info.type == NumberType::uint16 &&
+         info.components == 1;
 }
 
 }  // namespace
 
-std::vector<Dropped> write_stl(NewFile& out, const MeshOutput& mesh) {
-  MeshData polygons;
-  polygons.positions.assign(mesh.positions.begin(), mesh.positions.end());
-  polygons.corners.assign(mesh.corners.begin(), mesh.corners.end());
-  polygons.face_sizes.assign(mesh.face_sizes.begin(), mesh.face_sizes.end());
-  const Triangulation cut = triangulate(polygons);
-  const Attribute* bytes = facet_attribute(mesh);
-
+void write_stl(NewFile& out, const MeshOutput& mesh, DroppedCounter& dropped) {
+  const Attribute* bytes = nullptr;
+  for (const Attribute& attribute : mesh.attributes)
+    if (is_facet_bytes(attribute.info) && !bytes)
+      bytes = &attribute;
+    else
+      drop_attribute(dropped, attribute);
+  for (const std::string& reference : mesh.references) drop_reference(dropped, reference);
+  const Triangulation cut = triangulate(mesh.positions, mesh.corners, mesh.face_sizes);
   std::array<char, 80> header{};
   constexpr std::string_view kTitle = "binary STL written by ramcdb";
   std::copy(kTitle.begin(), kTitle.end(), header.begin());
   out.text({header.data(), header.size()});
   out.binary(static_cast<std::uint32_t>(cut.corners.size()));
-  for (std::size_t f = 0; f < cut.corners.size(); ++f) {
-    std::array<Point, 3> p;
-    for (std::size_t i = 0; i < 3; ++i) p[i] = mesh.positions[mesh.corners[cut.corners[f][i]]];
-    for (const float n : facet_normal(p[0], p[1], p[2])) out.binary(n);
-    for (const Point& corner : p)
-      for (int a = 0; a < 3; ++a) out.binary(static_cast<float>(corner[a]));
-    out.binary(static_cast<std::uint16_t>(bytes ? bytes->values[cut.face[f]] : 0));
+  for (std::size_t i = 0; i < cut.corners.size(); ++i) {
+    const Triangle& t = cut.corners[i];
+    const Point* p[3];
+    for (std::size_t c = 0; c < 3; ++c) p[c] = &mesh.positions[mesh.corners[t[c]]];
+    for (const float n : facet_normal(*p[0], *p[1], *p[2])) out.binary(n);
+    for (const Point* corner : p)
+      for (int a = 0; a < 3; ++a) out.binary(static_cast<float>((*corner)[a]));
+    const double value = bytes ? bytes->values[cut.face[i]] : 0;
+    out.binary(static_cast<std::uint16_t>(value > 0 ? value : 0));  // NaN is 0
   }
-  std::vector<Dropped> dropped;
-  if (cut.polygons) dropped.push_back({"polygons (written as triangles)", cut.polygons});
-  for (const Attribute& attribute : mesh.attributes)
-    if (&attribute != bytes) dropped.push_back(dropped_attribute(attribute));
-  return dropped;
 }
 
 }  // namespace ramcdb::mesh_file

@@ -1,8 +1,10 @@
+#include "api/mesh_file/triangulate.h"
+
 #include <algorithm>
 #include <numeric>
 #include <tuple>
 
-#include "api/mesh_file/mesh_file.h"
+#include "ramcdb/error.h"
 
 namespace ramcdb::mesh_file {
 namespace {
@@ -22,10 +24,11 @@ constexpr std::uint64_t kMostSteps = std::uint64_t{1} << 32, kStepsPerCorner = 6
 /// turns neither way, and where there is none of these either, the first.
 class EarClipper {
  public:
-  /// \param first the polygon's first position in `mesh.corners`
-  EarClipper(const MeshData& mesh, std::uint32_t first, std::uint32_t size, std::uint64_t& steps)
-      : mesh_(mesh), left_(size), steps_(steps) {
-    std::iota(left_.begin(), left_.end(), first);
+  /// The polygon of `size` corners from position `begin` of `corners` on.
+  EarClipper(std::span<const Point> positions, std::span<const std::uint32_t> corners, std::size_t begin,
+             std::uint32_t size, std::uint64_t& steps)
+      : positions_(positions), corners_(corners), left_(size), steps_(steps) {
+    std::iota(left_.begin(), left_.end(), static_cast<std::uint32_t>(begin));
     std::rotate(left_.begin(), left_.begin() + static_cast<std::ptrdiff_t>(least_turn()), left_.end());
     for (std::size_t i = 0; i < left_.size(); ++i) {
       const Point n = cross(at(i) - at(0), at(i + 1) - at(0));
@@ -63,7 +66,8 @@ class EarClipper {
       }
     return best;
   }
-  const Point& at(std::size_t i) const { return mesh_.positions[mesh_.corners[left_[i % left_.size()]]]; }
+
+  const Point& at(std::size_t i) const { return positions_[corners_[left_[i % left_.size()]]]; }
 
   /// Positive where corner i turns left, with its neighbours.
   double turn(std::size_t i) const {
@@ -107,31 +111,40 @@ class EarClipper {
     left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(ear));
   }
 
-  const MeshData& mesh_;
-  std::vector<std::uint32_t> left_;  ///< positions in mesh_.corners
+  std::span<const Point> positions_;
+  std::span<const std::uint32_t> corners_;
+  std::vector<std::uint32_t> left_;  ///< positions in corners_
   Point normal_;
   std::uint64_t& steps_;
 };
 
 }  // namespace
 
-Triangulation triangulate(const MeshData& mesh) {
+Triangulation triangulate(std::span<const Point> positions, std::span<const std::uint32_t> corners,
+                          std::span<const std::uint32_t> face_sizes) {
+  if (corners.size() > 0xffffffffU)
+    throw Error(Errc::limit_exceeded, "the mesh has more than 2^32 - 1 corners of faces", "", "split it");
   Triangulation cut;
-  cut.corners.reserve(mesh.corners.size() / 3);
-  std::uint64_t steps = kMostSteps + kStepsPerCorner * mesh.corners.size();
-  std::uint32_t first = 0;
-  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
-    const std::uint32_t size = mesh.face_sizes.empty() ? 3 : mesh.face_sizes[f];
+  const std::size_t faces = face_sizes.empty() ? corners.size() / 3 : face_sizes.size();
+  cut.corners.reserve(corners.size() - 2 * faces);
+  cut.face.reserve(corners.size() - 2 * faces);
+  std::uint64_t steps = kMostSteps + kStepsPerCorner * corners.size();
+  std::size_t begin = 0;
+  for (std::size_t f = 0; f < faces; ++f) {
+    const std::uint32_t size = face_sizes.empty() ? 3 : face_sizes[f];
     if (size == 3) {
-      cut.corners.push_back({first, first + 1, first + 2});
+      const auto c = static_cast<std::uint32_t>(begin);
+      cut.corners.push_back({c, c + 1, c + 2});
     } else {
+      cut.fans += !EarClipper(positions, corners, begin, size, steps).clip(cut.corners);
       ++cut.polygons;
-      cut.fans += !EarClipper(mesh, first, size, steps).clip(cut.corners);
     }
-    cut.face.resize(cut.corners.size(), f);
-    first += size;
+    cut.face.resize(cut.corners.size(), static_cast<std::uint32_t>(f));
+    begin += size;
   }
   return cut;
 }
+
+Triangulation triangulate(const MeshData& mesh) { return triangulate(mesh.positions, mesh.corners, mesh.face_sizes); }
 
 }  // namespace ramcdb::mesh_file

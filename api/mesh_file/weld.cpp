@@ -6,6 +6,15 @@
 
 namespace ramcdb::mesh_file {
 
+namespace {
+
+void move_value(Attribute& attribute, std::size_t from, std::size_t to) {
+  const std::size_t n = attribute.info.components;
+  for (std::size_t c = 0; c < n; ++c) attribute.values[to * n + c] = attribute.values[from * n + c];
+}
+
+}  // namespace
+
 void weld_exact(MeshData& mesh) {
   const auto key = [&](std::uint32_t v) {
     const Point& p = mesh.positions[v];
@@ -19,20 +28,16 @@ void weld_exact(MeshData& mesh) {
   std::vector<std::uint32_t> first(order.size());
   for (std::size_t i = 0; i < order.size(); ++i)
     first[order[i]] = i && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
+  std::vector<Attribute*> attributes;
+  for (Attribute& attribute : mesh.attributes)
+    if (attribute.info.of == AttributeOf::vertex) attributes.push_back(&attribute);
   std::vector<std::uint32_t> to(order.size());
   std::uint32_t kept = 0;
-  const auto keep_values = [&](std::uint32_t v) {
-    for (Attribute& attribute : mesh.attributes)
-      if (attribute.info.of == AttributeOf::vertex)
-        for (std::size_t k = 0; k < attribute.info.components; ++k)
-          attribute.values[kept * std::size_t{attribute.info.components} + k] =
-              attribute.values[v * std::size_t{attribute.info.components} + k];
-  };
   for (std::uint32_t v = 0; v < first.size(); ++v) {
     if (first[v] == v) {
       mesh.positions[kept] = mesh.positions[v];
       if (!mesh.vertex_ids.empty()) mesh.vertex_ids[kept] = mesh.vertex_ids[v];
-      keep_values(v);
+      for (Attribute* attribute : attributes) move_value(*attribute, v, kept);
       to[v] = kept++;
     } else {
       to[v] = to[first[v]];
@@ -40,9 +45,7 @@ void weld_exact(MeshData& mesh) {
   }
   mesh.positions.resize(kept);
   if (!mesh.vertex_ids.empty()) mesh.vertex_ids.resize(kept);
-  for (Attribute& attribute : mesh.attributes)
-    if (attribute.info.of == AttributeOf::vertex)
-      attribute.values.resize(kept * std::size_t{attribute.info.components});
+  for (Attribute* attribute : attributes) attribute->values.resize(std::size_t{kept} * attribute->info.components);
   for (std::uint32_t& v : mesh.corners) v = to[v];
   mesh.soup = false;
 }

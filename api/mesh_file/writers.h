@@ -1,42 +1,87 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
-#include <vector>
 
+#include "api/mesh_file/attribute_names.h"
+#include "api/mesh_file/file_bytes.h"
+#include "api/mesh_file/mesh_file.h"
 #include "api/mesh_file/new_file.h"
 
-/// One writer per format. What is written was checked; each returns what its format could not hold.
+/// What the writers of the formats share.
 namespace ramcdb::mesh_file {
 
-[[nodiscard]] std::vector<Dropped> write_ply(NewFile& out, const MeshOutput& mesh, bool ascii);
-[[nodiscard]] std::vector<Dropped> write_obj(NewFile& out, const MeshOutput& mesh);
-[[nodiscard]] std::vector<Dropped> write_off(NewFile& out, const MeshOutput& mesh);
-[[nodiscard]] std::vector<Dropped> write_stl(NewFile& out, const MeshOutput& mesh);
+/// One writer per format; `write_mesh` has checked the mesh. What the format cannot hold is counted.
+void write_ply(NewFile& out, const MeshOutput& mesh, bool ascii, DroppedCounter& dropped);
+void write_obj(NewFile& out, const MeshOutput& mesh, DroppedCounter& dropped);
+void write_off(NewFile& out, const MeshOutput& mesh, DroppedCounter& dropped);
+void write_stl(NewFile& out, const MeshOutput& mesh, DroppedCounter& dropped);
 
-/// Faces of a mesh to write, one after another.
-template <class Visit>
-void for_each_face(const MeshOutput& mesh, Visit&& visit) {
-  std::size_t first = 0;
-  const std::size_t faces = mesh.face_sizes.empty() ? mesh.corners.size() / 3 : mesh.face_sizes.size();
-  for (std::size_t f = 0; f < faces; ++f) {
-    const std::size_t size = mesh.face_sizes.empty() ? 3 : mesh.face_sizes[f];
-    visit(f, mesh.corners.subspan(first, size), first);
-    first += size;
-  }
+[[nodiscard]] inline NumberType number_type(Scalar scalar) {
+  return scalar == Scalar::float32 ? NumberType::float32 : NumberType::float64;
 }
 
 [[nodiscard]] inline std::size_t face_count(const MeshOutput& mesh) {
   return mesh.face_sizes.empty() ? mesh.corners.size() / 3 : mesh.face_sizes.size();
 }
 
-/// "vertex attribute 'quality' (float)"
-[[nodiscard]] Dropped dropped_attribute(const Attribute& attribute);
+/// The corners of faces, one face after another.
+class FaceWalk {
+ public:
+  explicit FaceWalk(const MeshOutput& mesh) : sizes_(mesh.face_sizes) {}
 
-[[nodiscard]] inline std::span<const double> value_of(const Attribute& attribute, std::size_t at) {
-  return std::span(attribute.values).subspan(at * attribute.info.components, attribute.info.components);
+  /// Positions in `corners` of the next face.
+  struct Range {
+    std::size_t begin = 0, end = 0;
+  };
+  Range next() {
+    const std::size_t begin = at_;
+    at_ += sizes_.empty() ? 3 : sizes_[face_++];
+    return {begin, at_};
+  }
+
+ private:
+  std::span<const std::uint32_t> sizes_;
+  std::size_t at_ = 0, face_ = 0;
+};
+
+/// The attribute is left out, or its names are.
+inline void drop_attribute(DroppedCounter& dropped, const Attribute& attribute) {
+  constexpr std::string_view kOf[] = {"", "vertex", "corner", "face"};
+  dropped.add(
+      std::string(kOf[static_cast<std::size_t>(attribute.info.of)]) + " attribute '" + shown(attribute.info.name) + "'",
+      attribute.count());
+}
+inline void drop_names(DroppedCounter& dropped, const Attribute& attribute) {
+  dropped.add("names of attribute '" + shown(attribute.info.name) + "'", attribute.info.names.size());
 }
 
-/// Writes a number of an attribute as text.
-void write_number(NewFile& out, NumberType type, double number);
+/// Whether a line of text can hold it.
+[[nodiscard]] inline bool is_one_line(std::string_view text) {
+  return std::all_of(text.begin(), text.end(),
+                     [](char c) { return static_cast<unsigned char>(c) >= ' ' || c == '\t'; });
+}
+inline void drop_reference(DroppedCounter& dropped, std::string_view reference) {
+  dropped.add("reference '" + shown(reference) + "'");
+}
+
+/// A component of a colour as 0..1, whatever its type.
+[[nodiscard]] inline double unit_color(double value, NumberType type) {
+  return is_float(type) ? value : value / range_of(type).most;
+}
+
+/// Whether value i of the attribute is none: NaN in all components.
+[[nodiscard]] inline bool is_none(const Attribute& attribute, std::size_t i) {
+  const auto value = std::span(attribute.values).subspan(i * attribute.info.components, attribute.info.components);
+  return std::all_of(value.begin(), value.end(), [](double number) { return number != number; });
+}
+
+/// "x y z", the shortest text.
+inline void write_point(NewFile& out, const Point& p, NumberType type) {
+  for (int a = 0; a < 3; ++a) {
+    if (a) out.text(" ");
+    out.number(p[a], type);
+  }
+}
 
 }  // namespace ramcdb::mesh_file

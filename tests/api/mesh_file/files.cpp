@@ -10,6 +10,7 @@
 #include <iterator>
 #include <numeric>
 
+#include "api/mesh_file/attribute_names.h"
 #include "ramcdb/error.h"
 
 namespace ramcdb::test {
@@ -63,15 +64,31 @@ std::uint64_t dropped(const mesh_file::MeshData& mesh, std::string_view what) {
   return 0;
 }
 
+namespace {
+
+/// One value each, all of the type; names that exist; a name of its own.
+bool is_sound(const Attribute& attribute, const mesh_file::MeshData& mesh) {
+  const AttributeInfo& info = attribute.info;
+  const std::size_t count = info.of == AttributeOf::vertex   ? mesh.positions.size()
+                            : info.of == AttributeOf::corner ? mesh.corners.size()
+                                                             : mesh.face_count();
+  const auto range = mesh_file::range_of(info.type);
+  return info.components >= 1 && attribute.values.size() == count * info.components &&
+         (info.fields.empty() || info.fields.size() == info.components) &&
+         std::all_of(attribute.values.begin(), attribute.values.end(),
+                     [&](double value) {
+                       return range.holds(value) &&
+                              (info.names.empty() || value < static_cast<double>(info.names.size()));
+                     }) &&
+         std::count_if(mesh.attributes.begin(), mesh.attributes.end(),
+                       [&](const Attribute& other) { return other.info.name == info.name; }) == 1;
+}
+
+}  // namespace
+
 bool is_sound(const mesh_file::MeshData& mesh) {
   const auto finite = [](const Point& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); };
   const auto exists = [&](std::uint32_t v) { return v < mesh.positions.size(); };
-  const auto has_values = [&](const Attribute& attribute) {
-    const std::size_t count = attribute.info.of == AttributeOf::vertex   ? mesh.positions.size()
-                              : attribute.info.of == AttributeOf::corner ? mesh.corners.size()
-                                                                         : mesh.face_count();
-    return attribute.values.size() == count * attribute.info.components;
-  };
   const std::size_t corners = mesh.face_sizes.empty()
                                   ? mesh.face_count() * 3
                                   : std::accumulate(mesh.face_sizes.begin(), mesh.face_sizes.end(), std::size_t{0});
@@ -79,7 +96,8 @@ bool is_sound(const mesh_file::MeshData& mesh) {
          std::all_of(mesh.positions.begin(), mesh.positions.end(), finite) &&
          std::all_of(mesh.corners.begin(), mesh.corners.end(), exists) &&
          (mesh.vertex_ids.empty() || mesh.vertex_ids.size() == mesh.positions.size()) &&
-         std::all_of(mesh.attributes.begin(), mesh.attributes.end(), has_values);
+         std::all_of(mesh.attributes.begin(), mesh.attributes.end(),
+                     [&](const Attribute& attribute) { return is_sound(attribute, mesh); });
 }
 
 std::vector<std::uint64_t> bits(const std::vector<Point>& positions) {
@@ -96,30 +114,86 @@ std::vector<Triangle> triangles(const mesh_file::MeshData& mesh) {
   return faces;
 }
 
-std::vector<std::uint32_t> corners_of(const std::vector<Triangle>& faces) {
-  std::vector<std::uint32_t> corners;
-  for (const Triangle& t : faces) corners.insert(corners.end(), t.begin(), t.end());
-  return corners;
+mesh_file::MeshOutput output_of(const std::vector<Point>& positions, const std::vector<Triangle>& faces,
+                                mesh_file::Scalar scalar) {
+  mesh_file::MeshOutput out;
+  out.positions = positions;
+  if (!faces.empty()) out.corners = {faces.front().data(), 3 * faces.size()};
+  out.scalar = scalar;
+  return out;
 }
 
-mesh_file::MeshData cut_to_triangles(const mesh_file::MeshData& mesh) {
-  mesh_file::MeshData cut;
-  cut.positions = mesh.positions;
-  for (const Triangle& t : mesh_file::triangulate(mesh).corners)
-    for (const std::uint32_t corner : t) cut.corners.push_back(mesh.corners[corner]);
-  return cut;
+mesh_file::MeshOutput output_of(const mesh_file::MeshData& mesh, mesh_file::Scalar scalar) {
+  mesh_file::MeshOutput out;
+  out.positions = mesh.positions;
+  out.corners = mesh.corners;
+  out.face_sizes = mesh.face_sizes;
+  out.scalar = scalar;
+  out.vertex_ids = mesh.vertex_ids;
+  out.attributes = mesh.attributes;
+  out.references = mesh.references;
+  return out;
 }
 
-std::vector<double> value_of(const Attribute& attribute, std::size_t at) {
-  const auto first = attribute.values.begin() + static_cast<std::ptrdiff_t>(at * attribute.info.components);
-  return {first, first + attribute.info.components};
+Attribute attribute(std::string_view name, AttributeOf of, NumberType type, std::uint8_t components, Meaning meaning,
+                    std::vector<double> values) {
+  Attribute made;
+  made.info.name = name;
+  made.info.of = of;
+  made.info.type = type;
+  made.info.components = components;
+  made.info.meaning = meaning;
+  made.values = std::move(values);
+  return made;
 }
 
-Attribute attribute_of(const mesh_file::MeshData& mesh, std::string_view name) {
+Attribute find(const mesh_file::MeshData& mesh, std::string_view name) {
   for (const Attribute& attribute : mesh.attributes)
     if (attribute.info.name == name) return attribute;
   ADD_FAILURE() << "no attribute " << name;
   return {};
+}
+
+void expect_same(const std::vector<Attribute>& read, const std::vector<Attribute>& expected) {
+  ASSERT_EQ(read.size(), expected.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_TRUE(read[i].info == expected[i].info) << read[i].info.name << " is not as " << expected[i].info.name;
+    ASSERT_EQ(read[i].values.size(), expected[i].values.size()) << read[i].info.name;
+    for (std::size_t k = 0; k < read[i].values.size(); ++k) {
+      const double a = read[i].values[k], b = expected[i].values[k];
+      ASSERT_TRUE(std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) ||
+                  (std::isnan(a) && std::isnan(b)))
+          << read[i].info.name << " number " << k << ": " << a << " is not " << b;
+    }
+  }
+}
+
+mesh_file::MeshData polygon_grid(std::uint32_t columns) {
+  mesh_file::MeshData mesh;
+  for (std::uint32_t y = 0; y < 3; ++y)
+    for (std::uint32_t x = 0; x <= columns; ++x)
+      mesh.positions.push_back({static_cast<double>(x), static_cast<double>(y), 0.25 * (x % 3)});
+  const std::uint32_t up = columns + 1;
+  for (std::uint32_t x = 0; x < columns; ++x) {
+    mesh.corners.insert(mesh.corners.end(), {x, x + 1, x + 1 + up, x + up});
+    mesh.corners.insert(mesh.corners.end(), {x + up, x + 1 + up, x + 1 + 2 * up, x + up, x + 1 + 2 * up, x + 2 * up});
+    mesh.face_sizes.insert(mesh.face_sizes.end(), {4, 3, 3});
+  }
+  mesh.corners.insert(mesh.corners.end(), {0, 1, 2, 2 + up, up});
+  mesh.face_sizes.push_back(5);
+  return mesh;
+}
+
+mesh_file::MeshData write_and_read(std::string_view name, const mesh_file::MeshOutput& out, bool ascii,
+                                   std::vector<mesh_file::Dropped>* dropped) {
+  const ScratchFolder scratch;
+  const auto file = scratch.file(name);
+  const auto left_out = mesh_file::write_mesh(file, mesh_file::format_of(file), out, ascii);
+  if (dropped)
+    *dropped = left_out;
+  else
+    EXPECT_TRUE(left_out.empty()) << left_out.front().what;
+  return mesh_file::read_mesh(file);
 }
 
 }  // namespace ramcdb::test

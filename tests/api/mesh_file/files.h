@@ -45,20 +45,30 @@ void write_bytes(const std::filesystem::path& file, std::string_view bytes);
 /// The bit patterns of all coordinates, so that -0 differs from 0.
 [[nodiscard]] std::vector<std::uint64_t> bits(const std::vector<Point>& positions);
 
-/// Faces as the writer takes them.
+/// The faces of a mesh of triangles.
 [[nodiscard]] std::vector<Triangle> triangles(const mesh_file::MeshData& mesh);
 
-/// The same, as corners.
-[[nodiscard]] std::vector<std::uint32_t> corners_of(const std::vector<Triangle>& faces);
+/// A mesh to write, whose parts must live on.
+[[nodiscard]] mesh_file::MeshOutput output_of(const std::vector<Point>& positions, const std::vector<Triangle>& faces,
+                                              mesh_file::Scalar scalar);
+[[nodiscard]] mesh_file::MeshOutput output_of(const mesh_file::MeshData& mesh, mesh_file::Scalar scalar);
 
-/// The mesh with its polygons cut to triangles; attributes are left out.
-[[nodiscard]] mesh_file::MeshData cut_to_triangles(const mesh_file::MeshData& mesh);
+/// An attribute of these values.
+[[nodiscard]] Attribute attribute(std::string_view name, AttributeOf of, NumberType type, std::uint8_t components,
+                                  Meaning meaning, std::vector<double> values);
 
 /// The attribute of this name; fails the test and returns an empty one when there is none.
-[[nodiscard]] Attribute attribute_of(const mesh_file::MeshData& mesh, std::string_view name);
+[[nodiscard]] Attribute find(const mesh_file::MeshData& mesh, std::string_view name);
 
-/// The numbers of one value.
-[[nodiscard]] std::vector<double> value_of(const Attribute& attribute, std::size_t at);
+/// Fails the test unless both have the same attributes in the same order, every bit of every value; one NaN is another.
+void expect_same(const std::vector<Attribute>& read, const std::vector<Attribute>& expected);
+
+/// Quads, a pentagon and triangles over a grid, `columns` cells wide.
+[[nodiscard]] mesh_file::MeshData polygon_grid(std::uint32_t columns);
+
+/// What comes back from a file of this name.
+[[nodiscard]] mesh_file::MeshData write_and_read(std::string_view name, const mesh_file::MeshOutput& out, bool ascii,
+                                                 std::vector<mesh_file::Dropped>* dropped = nullptr);
 
 /// The bytes of `value`, lowest first or highest first.
 template <class T>

@@ -4,7 +4,6 @@
 
 #include <bit>
 #include <cstdlib>
-#include <cstring>
 
 #include "api/mesh_file/file_bytes.h"
 #include "tests/api/mesh_file/files.h"
@@ -25,8 +24,9 @@ TEST(Obj, FormsOfCorners) {
     const auto mesh = read_text("a.obj", kFour + face);
     EXPECT_EQ(mesh.corners, (Indices{0, 1, 2})) << face;
     EXPECT_TRUE(mesh.face_sizes.empty());
-    EXPECT_EQ(mesh.dropped.empty(), !std::strpbrk(face, "/") || std::strstr(face, "1/ 2/")) << face;
-    EXPECT_TRUE(mesh.attributes.empty()) << face;
+    const auto full = read_text("a.obj", kFour + "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\nvn 0 1 0\nvn 1 0 0\n" + face);
+    EXPECT_EQ(full.corners, mesh.corners) << face;
+    for (const auto& d : full.dropped) EXPECT_EQ(d.what.find("do not exist"), d.what.npos) << face << d.what;
   }
 }
 
@@ -65,16 +65,23 @@ TEST(Obj, CommentsDoNotGoOn) {
 }
 
 TEST(Obj, WhatIsDroppedIsNamed) {
-  const auto mesh = read_text("a.obj", kFour +
-                                           "vn 0 0 1\nvn 0 0 1\nvt 0 0\n"
-                                           "l 1 2\nv 0 0 1 255 0 0\nv 0 0 2 1\nf 1 2 3\n");
+  const auto mesh =
+      read_text("a.obj", kFour +
+                             "vn 0 0 1\nvn 0 0 1\nvt 0 0\nusemtl red\nusemtl blue\ng one\no two\no three\n"
+                             "s off\ns on\ns 1\nl 1 2\nv 0 0 1 255 0 0 1\nv 0 0 2 1\nf 1/5/-3 2//1 3\ng\n");
   EXPECT_EQ(mesh.positions.size(), 6U);
-  EXPECT_EQ(dropped(mesh, "normal values that no face names"), 2U);
-  EXPECT_EQ(dropped(mesh, "texture values that no face names"), 1U);
+  EXPECT_EQ(dropped(mesh, "normals (vn)"), 1U);
+  EXPECT_EQ(dropped(mesh, "corners that name normals (vn) that do not exist"), 1U);
+  EXPECT_EQ(dropped(mesh, "texture coordinates (vt)"), 1U);
+  EXPECT_EQ(dropped(mesh, "corners that name texture coordinates (vt) that do not exist"), 1U);
+  EXPECT_EQ(dropped(mesh, "materials (usemtl)"), 1U);
+  EXPECT_EQ(dropped(mesh, "groups (g)"), 1U);
+  EXPECT_EQ(dropped(mesh, "objects (o)"), 1U);
+  EXPECT_EQ(dropped(mesh, "'s' lines"), 2U);
   EXPECT_EQ(dropped(mesh, "'l' lines"), 1U);
-  EXPECT_EQ(dropped(mesh, "vertex colours, which not all vertices have"), 1U);
-  EXPECT_EQ(dropped(mesh, "vertex weights"), 1U);
-  EXPECT_EQ(mesh.dropped.size(), 5U);
+  EXPECT_EQ(dropped(mesh, "vertex colours"), 1U);
+  EXPECT_EQ(dropped(mesh, "vertex weights"), 2U);
+  EXPECT_EQ(mesh.dropped.size(), 11U);
 }
 
 TEST(Obj, MadeUpKeywordsCostNeitherTimeNorMemory) {
@@ -119,6 +126,12 @@ TEST(Obj, WhatIsRefused) {
       {kFour + "f 1 2 /3\n", "missing"},
       {kFour + "f 1 2 3.0\n", "whole number"},
       {kFour + "f 1 2 +-3\n", "whole number"},
+      {kFour + "f 1/x 2 3\n", "texture coordinates (vt) is no whole number: 'x'"},
+      {kFour + "f 1/1/1/1 2 3\n", "normals (vn) is no whole number: '1/1'"},
+      {kFour + "vn 0 0\n", "normals (vn) with 2 numbers"},
+      {kFour + "vt\n", "texture coordinates (vt) with 0 numbers"},
+      {kFour + "vt 0 1,5\n", "no number: '1,5'"},
+      {"v 0 0 0 1 0 red\n", "no number: 'red'"},
       {"v 0 0\n", "missing"},
       {"v 0 0 # 0\n", "missing"},
       {"v 0 0 nan\n", "not finite"},

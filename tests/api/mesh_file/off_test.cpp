@@ -24,18 +24,24 @@ TEST(Off, FormsOfTheHeader) {
   }
 }
 
-TEST(Off, PolygonsAndColoursOfFaces) {
+TEST(Off, Polygons) {
   const auto mesh = read_text("a.off", "OFF\n4 2 0\n" + kBody + "4 0 1 2 3 255 0 0\n3 0 1 2 # last\n");
   EXPECT_EQ(mesh.face_sizes, (Indices{4, 3}));
-  EXPECT_EQ(dropped(mesh, "face colours"), 1U);
+  EXPECT_TRUE(mesh.dropped.empty());
 }
 
-TEST(Off, ColoursOfVerticesAreNamed) {
-  const std::string body = "0 0 0 255 0 0 255\n1 0 0 0.1 0.2 0.3\n0 1 0\n3 0 1 2\n";
-  EXPECT_EQ(dropped(read_text("a.off", "COFF\n3 1 0\n" + body), "vertex colours"), 2U);
-  EXPECT_EQ(dropped(read_text("a.off", "NOFF\n3 1 0\n" + body), "vertex normals"), 2U);
-  EXPECT_EQ(dropped(read_text("a.off", "STOFF\n3 1 0\n" + body), "texture coordinates"), 2U);
-  EXPECT_EQ(dropped(read_text("a.off", "OFF\n3 1 0\n" + body), "further numbers behind vertices"), 2U);
+TEST(Off, WhatIsDroppedIsNamed) {
+  const std::string body = "0 0 0 255 0 0 255\n1 0 0 0.1 0.2\n0 1 0\n3 0 1 2 7\n3 0 1 2 1 2 3 4 5\n3 0 1 2 256 0 0\n";
+  const char* wrong = "vertices with more or fewer numbers than the file's first word says";
+  for (const auto& [word, count] : {std::pair("COFF", 1U), {"NOFF", 2U}, {"STOFF", 1U}, {"OFF", 2U}, {"CNOFF", 2U}}) {
+    const auto mesh = read_text("a.off", std::string(word) + "\n3 3 0\n" + body);
+    EXPECT_EQ(dropped(mesh, wrong), count) << word;
+    EXPECT_EQ(dropped(mesh, "face colours that are numbers of a colour map"), 1U);
+    EXPECT_EQ(dropped(mesh, "further numbers behind faces"), 1U);
+    EXPECT_EQ(dropped(mesh, "colours beyond 0..255"), 1U);
+    EXPECT_EQ(mesh.dropped.size(), 4U);
+    EXPECT_TRUE(is_sound(mesh));
+  }
 }
 
 TEST(Off, CoordinatesMayStandOnLinesOfTheirOwn) {
@@ -73,6 +79,8 @@ TEST(Off, WhatIsRefused) {
       {"OFF\n4 1 0\n" + kBody + "3 0 1 4\n", "vertex index 4 does not exist (4 vertices)"},
       {"OFF\n4 1 0\n" + kBody + "3 0 1 4\n", "a.off:7)"},
       {"OFF\n4 1 0\n" + kBody + "3 0 1 -1\n", "does not exist"},
+      {"OFF\n4 1 0\n" + kBody + "3 0 1 2 1 2 red\n", "no number: 'red'"},
+      {"NOFF\n1 0 0\n0 0 0 1 1 1,5\n", "a.off:3)"},
       {"OFF\n1 0 0\nnan 0 0\n", "a.off:3)"},
       {"OFF\n1 0 0\n0 inf 0\n", "not finite"},
       {"OFF\n1 0 0\n0 0 # 0\n", "missing"},

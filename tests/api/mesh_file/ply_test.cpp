@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/api/mesh_file/files.h"
 #include "tests/api/mesh_file/samples.h"
 
@@ -36,9 +38,21 @@ TEST(Ply, AsciiWithoutNewlineAtTheEnd) {
 TEST(Ply, AllEncodingsSayTheSame) {
   const auto text = read_text("a.ply", sample_ply(0));
   EXPECT_EQ(text.vertex_ids, (std::vector<std::uint64_t>{7, 0x100000008, 0x200000009, 0x30000000a}));
-  EXPECT_EQ(attribute_of(text, "red").values.size(), 4U);
-  EXPECT_EQ(attribute_of(text, "flags").values.size(), 2U);
-  EXPECT_EQ(attribute_of(text, "flags").info.of, AttributeOf::face);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  Attribute q = attribute("face.q", AttributeOf::face, NumberType::float32, 1, Meaning::other, {-1.5, -1.5});
+  q.info.fields = {"q"};
+  expect_same(
+      text.attributes,
+      {attribute("color", AttributeOf::vertex, NumberType::uint8, 3, Meaning::color,
+                 {200, 0, 9, 200, 0, 9, 200, 0, 9, 200, 0, 9}),
+       attribute("texture", AttributeOf::vertex, NumberType::float64, 2, Meaning::texture,
+                 {0, -0.25, 0.5, -0.25, 1, none, 1.5, -0.25}),
+       attribute("q", AttributeOf::vertex, NumberType::int32, 1, Meaning::other, {-70000, -69999, -69998, -69997}),
+       attribute("texnumber", AttributeOf::face, NumberType::uint16, 1, Meaning::other, {65535, 65535}),
+       attribute("flags", AttributeOf::face, NumberType::int16, 1, Meaning::other, {-1, -1}),
+       attribute("corner.texture", AttributeOf::corner, NumberType::float32, 2, Meaning::texture,
+                 {0, 0.5, 1, 1.5, 2, 2.5, 0, 0.5, 1, 1.5, 2, 2.5}),
+       q});
   EXPECT_EQ(dropped(text, "element 'camera'"), 1U);
   EXPECT_EQ(text.dropped.size(), 1U);
   for (const int encoding : {1, 2}) {
@@ -49,25 +63,29 @@ TEST(Ply, AllEncodingsSayTheSame) {
         EXPECT_EQ(static_cast<float>(binary.positions[v][a]), static_cast<float>(text.positions[v][a]));
     EXPECT_EQ(binary.corners, text.corners);
     EXPECT_EQ(binary.vertex_ids, text.vertex_ids);
+    expect_same(binary.attributes, text.attributes);
     EXPECT_EQ(binary.dropped.size(), 1U);
-    for (const char* name : {"red", "flags"})
-      EXPECT_EQ(attribute_of(binary, name).values, attribute_of(text, name).values);
   }
 }
 
 struct TypeNames {
   const char *name, *other;
+  NumberType type;
   std::string bytes;  ///< of 7, lowest first
 };
 
 std::vector<TypeNames> all_types() {
-  return {{"char", "int8", bytes_of(std::int8_t{7})},    {"uchar", "uint8", bytes_of(std::uint8_t{7})},
-          {"short", "int16", bytes_of(std::int16_t{7})}, {"ushort", "uint16", bytes_of(std::uint16_t{7})},
-          {"int", "int32", bytes_of(std::int32_t{7})},   {"uint", "uint32", bytes_of(std::uint32_t{7})},
-          {"float", "float32", bytes_of(7.0F)},          {"double", "float64", bytes_of(7.0)}};
+  return {{"char", "int8", NumberType::int8, bytes_of(std::int8_t{7})},
+          {"uchar", "uint8", NumberType::uint8, bytes_of(std::uint8_t{7})},
+          {"short", "int16", NumberType::int16, bytes_of(std::int16_t{7})},
+          {"ushort", "uint16", NumberType::uint16, bytes_of(std::uint16_t{7})},
+          {"int", "int32", NumberType::int32, bytes_of(std::int32_t{7})},
+          {"uint", "uint32", NumberType::uint32, bytes_of(std::uint32_t{7})},
+          {"float", "float32", NumberType::float32, bytes_of(7.0F)},
+          {"double", "float64", NumberType::float64, bytes_of(7.0)}};
 }
 
-TEST(Ply, PropertiesOfAllTypesAreKeptAndListsNamed) {
+TEST(Ply, NumbersOfAllTypesAreAttributesAndListsAreNamed) {
   for (const bool big : {false, true})
     for (const auto& type : all_types())
       for (const char* name : {type.name, type.other}) {
@@ -82,7 +100,7 @@ TEST(Ply, PropertiesOfAllTypesAreKeptAndListsNamed) {
                         "uchar {} many\nend_header\n{}",
                         big ? "big" : "little", name, kXyz, name, body));
         EXPECT_EQ(mesh.positions, (std::vector<Point>{{0, 0, 0.5}, {1, 0, 0.5}, {0, 1, 0.5}})) << name;
-        EXPECT_EQ(attribute_of(mesh, "more").values, (std::vector<double>{7, 7, 7})) << name;
+        expect_same(mesh.attributes, {attribute("more", AttributeOf::vertex, type.type, 1, Meaning::other, {7, 7, 7})});
         EXPECT_EQ(dropped(mesh, fmt::format("vertex property 'many' (list of {})", name)), 3U);
         EXPECT_EQ(mesh.dropped.size(), 1U);
       }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -26,6 +27,29 @@ TEST(Weld, EqualPositionsBecomeOneVertex) {
   EXPECT_EQ(mesh.vertex_ids, (std::vector<std::uint64_t>{10, 11, 12, 15}));
   EXPECT_EQ(mesh.corners, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}));
   EXPECT_FALSE(mesh.soup);
+}
+
+AttributeInfo info(const char* name, AttributeOf of, NumberType type, std::uint8_t components) {
+  AttributeInfo made;
+  made.name = name;
+  made.of = of;
+  made.type = type;
+  made.components = components;
+  return made;
+}
+
+TEST(Weld, AttributesStayWithTheirVertices) {
+  MeshData mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {-0.0, 0, 0}, {0, 1, 0}, {1, 0, 0}};
+  mesh.corners = {0, 1, 3, 2, 4, 3};
+  mesh.attributes = {{info("uv", AttributeOf::vertex, NumberType::float32, 2), {0, 1, 10, 11, 20, 21, 30, 31, 40, 41}},
+                     {info("c", AttributeOf::corner, NumberType::float32, 1), {0, 1, 2, 3, 4, 5}},
+                     {info("f", AttributeOf::face, NumberType::uint8, 1), {7, 8}}};
+  mesh_file::weld_exact(mesh);
+  EXPECT_EQ(mesh.corners, (std::vector<std::uint32_t>{0, 1, 2, 0, 1, 2}));
+  EXPECT_EQ(mesh.attributes[0].values, (std::vector<double>{0, 1, 10, 11, 30, 31}));
+  EXPECT_EQ(mesh.attributes[1].values, (std::vector<double>{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(mesh.attributes[2].values, (std::vector<double>{7, 8}));
 }
 
 TEST(Weld, ASoupBecomesTheMeshItCameFrom) {
@@ -73,22 +97,23 @@ MeshData on_plane(const Outline& outline, int plane) {
 
 /// Cuts the only polygon. Triangles that all turn the way the polygon does and whose edges add up to its outline cover
 /// it once; edges add up when each vertex keeps its edges, which clipping ensures, and the area is checked.
-void expect_cut(MeshData mesh, double least_area = 0) {
-  const MeshData before = mesh;
+void expect_cut(const MeshData& before, double least_area = 0) {
   Point normal;
   const auto at = [&](std::size_t i) { return before.positions[before.corners[i % before.corners.size()]]; };
   for (std::size_t i = 0; i < before.corners.size(); ++i) {
     const Point n = cross(at(i) - at(0), at(i + 1) - at(0));
     for (int a = 0; a < 3; ++a) normal[a] += n[a];
   }
-  EXPECT_EQ(mesh_file::triangulate(mesh).polygons, before.corners.size() > 3 ? 1U : 0U);
-  mesh = cut_to_triangles(mesh);
-  ASSERT_EQ(mesh.corners.size(), 3 * (before.corners.size() - 2));
-  EXPECT_EQ(bits(mesh.positions), bits(before.positions));
+  const mesh_file::Triangulation cut = mesh_file::triangulate(before);
+  EXPECT_EQ(cut.polygons, before.corners.size() > 3 ? 1U : 0U);
+  EXPECT_EQ(cut.fans, 0U);
+  EXPECT_EQ(cut.face, std::vector<std::uint32_t>(before.corners.size() - 2, 0));
+  ASSERT_EQ(cut.corners.size(), before.corners.size() - 2);
   const double length = std::sqrt(dot(normal, normal));
   double sum = 0;
-  for (const Triangle& t : triangles(mesh)) {
-    const Point &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+  for (const Triangle& t : cut.corners) {
+    ASSERT_LT(*std::max_element(t.begin(), t.end()), before.corners.size());
+    const Point a = at(t[0]), b = at(t[1]), c = at(t[2]);
     const double area = dot(cross(b - a, c - a), normal) / length;
     EXPECT_GE(area, least_area) << t[0] << ' ' << t[1] << ' ' << t[2];
     sum += area;
@@ -166,15 +191,24 @@ TEST(Triangulate, OtherPolygonsStayWhole) {
   MeshData mesh = on_plane({{0, 0}, {1, 0}, {1, 1}, {0, 1}, {5, 5}}, 1);
   mesh.corners = {0, 1, 2, 0, 1, 2, 3, 4, 3, 2, 1, 0};
   mesh.face_sizes = {3, 4, 5};
-  const mesh_file::Triangulation cut = mesh_file::triangulate(mesh);
+  const auto cut = mesh_file::triangulate(mesh);
   EXPECT_EQ(cut.polygons, 2U);
   EXPECT_EQ(cut.fans, 0U);
   EXPECT_EQ(cut.face, (std::vector<std::uint32_t>{0, 1, 1, 2, 2, 2}));
   EXPECT_EQ(cut.corners[0], (Triangle{0, 1, 2}));
   for (std::size_t t = 0; t < cut.corners.size(); ++t)
-    for (const std::uint32_t corner : cut.corners[t])
-      EXPECT_EQ(cut.face[t], corner < 3 ? 0U : corner < 7 ? 1U : 2U) << "a triangle's corners are those of its face";
-  EXPECT_EQ(mesh_file::triangulate(cut_to_triangles(mesh)).polygons, 0U);
+    for (const std::uint32_t c : cut.corners[t])
+      EXPECT_EQ(cut.face[t], c < 3 ? 0U : c < 7 ? 1U : 2U) << "corners are those of the face that was cut";
+}
+
+TEST(Triangulate, TrianglesAreTheirCorners) {
+  MeshData mesh = on_plane({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0);
+  mesh.corners = {0, 1, 2, 3, 2, 1};
+  mesh.face_sizes = {};
+  const auto cut = mesh_file::triangulate(mesh);
+  EXPECT_EQ(cut.corners, (std::vector<Triangle>{{0, 1, 2}, {3, 4, 5}}));
+  EXPECT_EQ(cut.face, (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_EQ(cut.polygons, 0U);
 }
 
 TEST(Triangulate, PolygonsWithoutShapeTakeLittleTime) {
@@ -190,11 +224,12 @@ TEST(Triangulate, PolygonsWithoutShapeTakeLittleTime) {
       mesh.corners.push_back(i);
     }
     mesh.face_sizes = {kCorners};
-    const mesh_file::Triangulation cut = mesh_file::triangulate(mesh);
+    const auto cut = mesh_file::triangulate(mesh);
     EXPECT_EQ(cut.polygons, 1U);
-    EXPECT_EQ(cut.corners.size(), kCorners - 2);
     EXPECT_EQ(cut.fans, kind > 1 ? 1U : 0U);
-    for (const Triangle& t : cut.corners) EXPECT_LT(std::max({t[0], t[1], t[2]}), kCorners);
+    EXPECT_EQ(cut.face.size(), kCorners - 2);
+    ASSERT_EQ(cut.corners.size(), kCorners - 2);
+    for (const Triangle& t : cut.corners) ASSERT_LT(*std::max_element(t.begin(), t.end()), kCorners);
   }
 }
 

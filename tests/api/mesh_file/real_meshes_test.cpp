@@ -84,20 +84,21 @@ bool are_floats(const std::vector<Point>& positions) {
 
 /// What comes back from a file of the same format that we wrote ourselves.
 void expect_same_again(const mesh_file::MeshData& mesh, const ScratchFolder& scratch, const std::string& name) {
-  const auto cut = cut_to_triangles(mesh);
-  const auto faces = triangles(cut);
   for (const bool ascii : {false, true}) {
     const auto file = scratch.file("again" + fs::path(name).extension().string());
     // Binary floats stay floats; a float32's text is another double.
     const bool binary = !ascii && mesh_file::format_of(file) == mesh_file::Format::ply;
-    const auto scalar = binary && are_floats(cut.positions) ? mesh_file::Scalar::float32 : mesh_file::Scalar::float64;
-    mesh_file::write_mesh(file, mesh_file::format_of(file),
-                          {cut.positions, corners_of(faces), {}, scalar, {}, {}, {}, {}}, ascii);
+    const auto scalar = binary && are_floats(mesh.positions) ? mesh_file::Scalar::float32 : mesh_file::Scalar::float64;
+    mesh_file::write_mesh(file, mesh_file::format_of(file), output_of(mesh, scalar), ascii);
     const auto again = mesh_file::read_mesh(file);
-    EXPECT_EQ(again.face_count(), faces.size()) << name;
+    EXPECT_EQ(again.face_count(), mesh.face_count()) << name;
     if (mesh.soup) continue;  // corners stand in the order of faces
-    EXPECT_TRUE(again.positions == cut.positions) << name;
-    EXPECT_TRUE(again.corners == cut.corners) << name;
+    EXPECT_TRUE(again.positions == mesh.positions) << name;
+    EXPECT_TRUE(again.corners == mesh.corners) << name;
+    EXPECT_TRUE(again.face_sizes == mesh.face_sizes) << name;
+    SCOPED_TRACE(name);
+    expect_same(again.attributes, mesh.attributes);
+    EXPECT_EQ(again.references, mesh.references);
   }
 }
 

@@ -43,13 +43,6 @@ TestMesh hard_numbers(Scalar scalar) {
   return mesh;
 }
 
-MeshData write_and_read(const std::string& name, const MeshOutput& out, bool ascii) {
-  const ScratchFolder scratch;
-  const auto file = scratch.file(name);
-  mesh_file::write_mesh(file, mesh_file::format_of(file), out, ascii);
-  return mesh_file::read_mesh(file);
-}
-
 /// What a program that keeps float32 makes of these.
 std::vector<Point> as_floats(std::vector<Point> points) {
   for (Point& p : points)
@@ -68,8 +61,7 @@ class RoundTrip : public testing::TestWithParam<Case> {};
 TEST_P(RoundTrip, KeepsEveryBit) {
   const auto [name, scalar, ascii] = GetParam();
   const TestMesh mesh = hard_numbers(scalar);
-  const MeshData read =
-      write_and_read(name, {mesh.positions, corners_of(mesh.faces), {}, scalar, {}, {}, {}, {}}, ascii);
+  const MeshData read = write_and_read(name, output_of(mesh.positions, mesh.faces, scalar), ascii);
   EXPECT_TRUE(is_sound(read));
   const bool text = ascii || mesh_file::format_of(name) != Format::ply;
   EXPECT_EQ(bits(text && scalar == Scalar::float32 ? as_floats(read.positions) : read.positions), bits(mesh.positions));
@@ -96,8 +88,7 @@ TEST(RoundTripText, ShortDoublesStayDoubles) {
   const std::vector<Point> rounds_well{{128.602, 0, 0}, {0.1, 0, 0}, {0.2, 0, 0}};  // 128.602 with %.17g
   for (const auto& positions : {tenths, rounds_well})
     for (const char* name : {"a.obj", "a.off", "a.ply"}) {
-      const MeshData read =
-          write_and_read(name, {positions, corners_of(faces), {}, Scalar::float64, {}, {}, {}, {}}, true);
+      const MeshData read = write_and_read(name, output_of(positions, faces, Scalar::float64), true);
       EXPECT_EQ(bits(read.positions), bits(positions)) << name;
     }
 }
@@ -126,8 +117,7 @@ TEST(ForeignText, NumbersAreTheNearestDoublesInEveryFormat) {
 
 TEST(RoundTripStl, KeepsEveryCorner) {
   const TestMesh mesh = hard_numbers(Scalar::float32);
-  const MeshData read =
-      write_and_read("a.stl", {mesh.positions, corners_of(mesh.faces), {}, Scalar::float32, {}, {}, {}, {}}, false);
+  const MeshData read = write_and_read("a.stl", output_of(mesh.positions, mesh.faces, Scalar::float32), false);
   ASSERT_EQ(read.face_count(), mesh.faces.size());
   EXPECT_TRUE(read.soup);
   EXPECT_TRUE(read.dropped.empty());
@@ -144,8 +134,9 @@ TEST(RoundTripIds, EveryBitOfAnIdStays) {
   ids[0] = 0;
   ids[1] = ~std::uint64_t{0};
   for (const bool ascii : {false, true}) {
-    const MeshData read = write_and_read(
-        "ids.ply", {mesh.positions, corners_of(mesh.faces), {}, Scalar::float64, ids, {}, {}, {}}, ascii);
+    MeshOutput out = output_of(mesh.positions, mesh.faces, Scalar::float64);
+    out.vertex_ids = ids;
+    const MeshData read = write_and_read("ids.ply", out, ascii);
     EXPECT_EQ(read.vertex_ids, ids);
     EXPECT_EQ(bits(read.positions), bits(mesh.positions));
     EXPECT_EQ(triangles(read), mesh.faces);
@@ -155,25 +146,25 @@ TEST(RoundTripIds, EveryBitOfAnIdStays) {
 TEST(RoundTripIds, FloatsKeepTheirIds) {
   const TestMesh mesh = hard_numbers(Scalar::float32);
   const std::vector<std::uint64_t> ids(mesh.positions.size(), 0xfffffffffffffffdU);
-  const MeshData read =
-      write_and_read("ids.ply", {mesh.positions, corners_of(mesh.faces), {}, Scalar::float32, ids, {}, {}, {}}, false);
+  MeshOutput out = output_of(mesh.positions, mesh.faces, Scalar::float32);
+  out.vertex_ids = ids;
+  const MeshData read = write_and_read("ids.ply", out, false);
   EXPECT_EQ(read.vertex_ids, ids);
   EXPECT_EQ(bits(read.positions), bits(mesh.positions));
 }
 
-TEST(RoundTripColors, FaceColoursAreWritten) {
+TEST(RoundTripColors, FaceColoursComeBackFromPly) {
   const TestMesh mesh = boxes(2);
   const std::vector<mesh_file::FaceColor> colors(mesh.faces.size(), {1, 200, 255});
-  const std::vector<std::uint32_t> corners = corners_of(mesh.faces);
-  const MeshOutput out{mesh.positions, corners, {}, Scalar::float32, {}, colors, {}, {}};
+  MeshOutput out = output_of(mesh.positions, mesh.faces, Scalar::float32);
+  out.face_colors = colors;
+  Attribute color = attribute("color", AttributeOf::face, NumberType::uint8, 3, Meaning::color, {});
+  for (std::size_t f = 0; f < colors.size(); ++f) color.values.insert(color.values.end(), {1, 200, 255});
   for (const bool ascii : {false, true}) {
     const MeshData read = write_and_read("colors.ply", out, ascii);
     EXPECT_EQ(triangles(read), mesh.faces);
-    EXPECT_EQ(value_of(attribute_of(read, "color"), 1), (std::vector<double>{1, 200, 255}));
+    expect_same(read.attributes, {color});
   }
-  const MeshData off = write_and_read("colors.off", out, false);
-  EXPECT_EQ(triangles(off), mesh.faces);
-  EXPECT_EQ(value_of(attribute_of(off, "color"), 1), (std::vector<double>{1, 200, 255}));
 }
 
 /// A locale with a decimal comma, also where none is installed.
@@ -206,8 +197,7 @@ TEST(RoundTripLocale, DecimalCommaDoesNotMatter) {
   if (!locale.installed()) std::printf("no C locale with a decimal comma is installed: only the C++ one was set\n");
   const TestMesh mesh = hard_numbers(Scalar::float64);
   for (const char* name : {"a.ply", "a.obj", "a.off"}) {
-    const MeshData read =
-        write_and_read(name, {mesh.positions, corners_of(mesh.faces), {}, Scalar::float64, {}, {}, {}, {}}, true);
+    const MeshData read = write_and_read(name, output_of(mesh.positions, mesh.faces, Scalar::float64), true);
     EXPECT_EQ(bits(read.positions), bits(mesh.positions)) << name;
     EXPECT_EQ(triangles(read), mesh.faces) << name;
   }
@@ -221,24 +211,66 @@ TEST(Writer, RefusesCoordinatesThatTheFileCannotHold) {
   for (const double wrong : {1e39, -1e300, std::nan(""), HUGE_VAL}) {
     const std::vector<Point> positions{{0, 0, 0}, {1, 0, 0}, {0, wrong, 0}};
     for (const Format format : {Format::ply, Format::obj, Format::off, Format::stl})
-      EXPECT_THROW(
-          mesh_file::write_mesh(file, format, {positions, corners_of(faces), {}, Scalar::float32, {}, {}, {}, {}}),
-          Error)
-          << wrong;
+      EXPECT_THROW(mesh_file::write_mesh(file, format, output_of(positions, faces, Scalar::float32)), Error) << wrong;
   }
   EXPECT_EQ(read_bytes(file), "what was there");
+}
+
+TEST(Writer, RefusesFacesAndAttributesThatAreNone) {
+  const ScratchFolder scratch;
+  const MeshData good = polygon_grid(2);
+  const std::size_t v = good.positions.size(), c = good.corners.size();
+  const auto with = [&](Attribute attribute) {
+    MeshData mesh = good;
+    mesh.attributes = {std::move(attribute)};
+    return mesh;
+  };
+  const auto values = [](AttributeOf of, NumberType type, std::vector<double> numbers) {
+    return attribute("a", of, type, 1, Meaning::other, std::move(numbers));
+  };
+  std::vector<MeshData> wrong{with(values(AttributeOf::vertex, NumberType::float32, std::vector<double>(v - 1, 0))),
+                              with(values(AttributeOf::corner, NumberType::float32, std::vector<double>(c + 1, 0))),
+                              with(values(AttributeOf::face, NumberType::float32, std::vector<double>(v, 0))),
+                              with(values(AttributeOf::vertex, NumberType::uint8, std::vector<double>(v, 256))),
+                              with(values(AttributeOf::vertex, NumberType::int8, std::vector<double>(v, -129))),
+                              with(values(AttributeOf::vertex, NumberType::uint32, std::vector<double>(v, 0.5))),
+                              with(values(AttributeOf::vertex, NumberType::int32, std::vector<double>(v, HUGE_VAL))),
+                              with(values(AttributeOf::vertex, NumberType::float32, std::vector<double>(v, 0.1))),
+                              with(values(AttributeOf::vertex, NumberType::float32, std::vector<double>(v, 1e300))),
+                              good,
+                              good,
+                              good,
+                              good,
+                              good,
+                              good,
+                              good};
+  wrong[9].attributes = {attribute("a", AttributeOf::vertex, NumberType::uint8, 0, Meaning::other, {})};
+  wrong[10].attributes = {
+      attribute("a", AttributeOf::vertex, NumberType::uint8, 17, Meaning::other, std::vector<double>(17 * v, 0))};
+  wrong[11].attributes = {values(AttributeOf::vertex, NumberType::uint8, std::vector<double>(v, 0))};
+  wrong[11].attributes[0].info.fields = {"a", "b"};
+  wrong[12].attributes = {values(AttributeOf::vertex, NumberType::uint8, std::vector<double>(v, 1))};
+  wrong[12].attributes[0].info.names = {"only"};
+  wrong[13].corners.pop_back();
+  wrong[14].corners[5] = static_cast<std::uint32_t>(v);
+  wrong[15].face_sizes[0] = 2;
+  wrong[15].face_sizes[1] = 5;
+  for (std::size_t i = 0; i < wrong.size(); ++i)
+    for (const Format format : {Format::ply, Format::obj, Format::off, Format::stl})
+      EXPECT_THROW(mesh_file::write_mesh(scratch.file("a"), format, output_of(wrong[i], Scalar::float64)), Error) << i;
+  EXPECT_FALSE(std::filesystem::exists(scratch.file("a")));
 }
 
 TEST(Writer, LeavesNothingBehindWhereItCannotWrite) {
   const ScratchFolder scratch;
   const TestMesh mesh = boxes(1);
   EXPECT_THROW(mesh_file::write_mesh(scratch.file("none") / "a.ply", Format::ply,
-                                     {mesh.positions, corners_of(mesh.faces), {}, Scalar::float32, {}, {}, {}, {}}),
+                                     output_of(mesh.positions, mesh.faces, Scalar::float32)),
                Error);
   std::filesystem::create_directory(scratch.file("a.ply"));
-  EXPECT_THROW(mesh_file::write_mesh(scratch.file("a.ply"), Format::ply,
-                                     {mesh.positions, corners_of(mesh.faces), {}, Scalar::float32, {}, {}, {}, {}}),
-               Error);
+  EXPECT_THROW(
+      mesh_file::write_mesh(scratch.file("a.ply"), Format::ply, output_of(mesh.positions, mesh.faces, Scalar::float32)),
+      Error);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch.folder()), {}), 1);
 }
 
@@ -247,8 +279,7 @@ TEST(Writer, ReplacesTheFileAndLeavesNoOther) {
   const TestMesh mesh = boxes(1);
   const auto file = scratch.file("a.ply");
   write_bytes(file, "older");
-  mesh_file::write_mesh(file, Format::ply,
-                        {mesh.positions, corners_of(mesh.faces), {}, Scalar::float32, {}, {}, {}, {}});
+  mesh_file::write_mesh(file, Format::ply, output_of(mesh.positions, mesh.faces, Scalar::float32));
   EXPECT_EQ(mesh_file::read_mesh(file).face_count(), mesh.faces.size());
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch.folder()), {}), 1);
 }

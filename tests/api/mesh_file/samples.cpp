@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "tests/api/mesh_file/files.h"
 
 namespace ramcdb::test {
@@ -10,7 +12,7 @@ namespace {
 constexpr float kPositions[4][3] = {{0, 0, 0}, {1.5F, 0, 0.1F}, {0, -2, 0}, {0.25F, 1, 3e-7F}};
 constexpr int kFaces[2][4] = {{3, 0, 1, 2}, {3, 2, 1, 3}};
 
-std::string binary_stl(std::string_view title) {
+std::string binary_stl(std::string_view title, std::uint16_t attribute) {
   std::string bytes(title);
   bytes.resize(80, ' ');
   bytes += bytes_of(std::uint32_t{2});
@@ -18,7 +20,7 @@ std::string binary_stl(std::string_view title) {
     for (int a = 0; a < 3; ++a) bytes += bytes_of(0.0F);
     for (int c = 1; c < 4; ++c)
       for (int a = 0; a < 3; ++a) bytes += bytes_of(kPositions[face[c]][a]);
-    bytes += bytes_of(std::uint16_t{0});
+    bytes += bytes_of(attribute);
   }
   return bytes;
 }
@@ -47,8 +49,10 @@ std::string sample_ply(int encoding) {
   static constexpr const char* kNames[] = {"ascii", "binary_little_endian", "binary_big_endian"};
   std::string bytes = fmt::format(
       "ply\nformat {} 1.0\ncomment a sample\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-      "property uchar red\nproperty uint ramcdb_id_hi\nproperty uint ramcdb_id_lo\nelement face 2\n"
-      "property list uchar int vertex_indices\nproperty short flags\nelement camera 1\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uint ramcdb_id_hi\nproperty uint "
+      "ramcdb_id_lo\nproperty double s\nproperty double t\nproperty int q\nelement face 2\nproperty ushort texnumber\n"
+      "property list uchar int vertex_indices\nproperty short flags\nproperty list ushort float texcoord\n"
+      "property float q\nelement camera 1\n"
       "property list uint double view\nproperty char kind\nend_header\n",
       kNames[encoding]);
   std::string line;
@@ -64,15 +68,22 @@ std::string sample_ply(int encoding) {
   };
   for (std::uint32_t v = 0; v < 4; ++v) {
     for (int a = 0; a < 3; ++a) put(kPositions[v][a]);
-    put(std::uint8_t{200});
+    for (const std::uint8_t c : {std::uint8_t{200}, std::uint8_t{0}, std::uint8_t{9}}) put(c);
     put(v);
     put(v + 7);
+    put(0.5 * v);
+    put(v == 2 ? std::numeric_limits<double>::quiet_NaN() : -0.25);
+    put(static_cast<std::int32_t>(v) - 70000);
     end_line();
   }
   for (const auto& face : kFaces) {
+    put(std::uint16_t{65535});
     put(std::uint8_t{3});
     for (int c = 1; c < 4; ++c) put(face[c]);
     put(std::int16_t{-1});
+    put(std::uint16_t{6});
+    for (int i = 0; i < 6; ++i) put(0.5F * static_cast<float>(i));
+    put(-1.5F);
     end_line();
   }
   put(std::uint32_t{2});
@@ -91,11 +102,20 @@ std::vector<Sample> samples() {
       {"big.ply", sample_ply(2), 4, 2, true},
       {"plain.off", "OFF\n4 2 0\n" + vertex_lines("", "") + faces, 4, 2, true},
       {"colours.off", "COFF\n4 2 0\n" + vertex_lines("", " 255 0 0 255") + faces, 4, 2, true},
+      {"all.off", "STCNOFF\n4 2 0\n" + vertex_lines("", " 0 0 1 9 99 255 .5 nan") + "3 0 1 2 1 2 3 4\n3 2 1 3\n", 4, 2,
+       true},
+      {"fractions.off", "CNOFF\n4 2 0\n" + vertex_lines("", " 0 0 1 0.5 1 .25") + "3 0 1 2 .1 2 3\n3 2 1 3\n", 4, 2,
+       true},
       {"all.obj", "# a sample\nmtllib a.mtl\n" + vertex_lines("v ", "") + "vn 0 0 1\nf 1//1 2//1 3//1\nf -2 -3 -1\n", 4,
        2, false},
+      {"more.obj",
+       vertex_lines("v ", " .5 1 nan") +
+           "vt 0 1\nvt .5 .5 1\nvn 0 0 1\no one\ng a b\nusemtl m\ns 1\nf 1/1/1 2/2/1 3/1/-1\n" +
+           "usemtl n\ns off\no two\ng\nf -2/2 -3/-2 -1//1\n",
+       4, 2, false},
       {"text.stl", ascii_stl(), 6, 2, true},
-      {"binary.stl", binary_stl("binary"), 6, 2, true},
-      {"solid.stl", binary_stl("solid as some exporters write it"), 6, 2, true},
+      {"binary.stl", binary_stl("binary", 0x8001), 6, 2, true},
+      {"solid.stl", binary_stl("solid as some exporters write it", 0), 6, 2, true},
   };
 }
 

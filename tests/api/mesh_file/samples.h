@@ -13,7 +13,8 @@ struct Sample {
   bool counted = true;  ///< whether the file announces its counts, so that a shorter one is known to be cut off
 };
 
-/// A PLY of four vertices with colours and ids, two faces and an unknown element: 0 text, 1 little, 2 big endian.
+/// A PLY of four vertices and two faces with all kinds of attributes and ids, and an unknown element: 0 text, 1 little,
+/// 2 big endian.
 [[nodiscard]] std::string sample_ply(int encoding);
 
 [[nodiscard]] std::vector<Sample> samples();

@@ -64,8 +64,39 @@ TEST(Stl, TheLengthTellsBinaryFromText) {
 TEST(Stl, WhatIsDroppedIsNamed) {
   const auto mesh = read_text("a.stl", binary("x", 2, 2, 0.5F, 7) + "tail");
   EXPECT_EQ(mesh.face_count(), 2U);
-  EXPECT_EQ(attribute_of(mesh, "attribute").values, (std::vector<double>{7, 7}));
+  EXPECT_EQ(mesh.dropped.size(), 1U);
   EXPECT_EQ(dropped(mesh, "bytes behind the last facet"), 4U);
+}
+
+TEST(Stl, AttributeBytesComeBack) {
+  std::string bytes = binary("x", 3, 3);
+  EXPECT_TRUE(read_text("a.stl", bytes).attributes.empty());
+  bytes[84 + 2 * 50 - 2] = '\x34';
+  bytes[84 + 2 * 50 - 1] = '\xff';
+  const auto mesh = read_text("a.stl", bytes);
+  expect_same(mesh.attributes,
+              {attribute("attribute", AttributeOf::face, NumberType::uint16, 1, Meaning::other, {0, 0xff34, 0})});
+  expect_same(write_and_read("a.stl", output_of(mesh, mesh_file::Scalar::float32), false).attributes, mesh.attributes);
+}
+
+TEST(Stl, PolygonsAreWrittenAsTriangles) {
+  auto mesh = polygon_grid(3);
+  std::vector<double> numbers;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) numbers.push_back(static_cast<double>(f + 1));
+  mesh.attributes = {attribute("attribute", AttributeOf::face, NumberType::uint16, 1, Meaning::other, numbers),
+                     attribute("q", AttributeOf::face, NumberType::uint16, 1, Meaning::other, numbers)};
+  std::vector<mesh_file::Dropped> left_out;
+  const auto read = write_and_read("a.stl", output_of(mesh, mesh_file::Scalar::float32), false, &left_out);
+  const auto cut = mesh_file::triangulate(mesh);
+  ASSERT_EQ(read.face_count(), cut.face.size());
+  for (std::size_t t = 0; t < cut.face.size(); ++t) {
+    EXPECT_EQ(read.attributes.at(0).values[t], numbers[cut.face[t]]);
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_EQ(read.positions[3 * t + c], mesh.positions[mesh.corners[cut.corners[t][c]]]);
+  }
+  ASSERT_EQ(left_out.size(), 1U);
+  EXPECT_EQ(left_out[0].what, "face attribute 'q'");
+  EXPECT_EQ(left_out[0].count, mesh.face_count());
 }
 
 TEST(Stl, WhatIsRefused) {
