@@ -4,7 +4,9 @@
 #include <sstream>
 
 #include "codec/chart_codec.h"
+#include "codec/layer_codec.h"
 #include "codec/page_codec.h"
+#include "codec/polygon_codec.h"
 #include "codec/range_coder.h"
 #include "codec/wire_codec.h"
 #include "tests/codec/hostile_bytes.h"
@@ -79,10 +81,30 @@ TEST(FormatExample, RawChart) {
   expect_example(chart, {{0, 0, 0}, {10, 10, 3}}, ChartCoding::raw, {{0, 0, 1}, {0, 1, 2}, {0, 3, 1}});
 }
 
-TEST(FormatExample, DenseChart) {
-  const Chart tent{
+Chart tent() {
+  return {
       {4}, {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}, {5, 5, 4}}, {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}};
-  expect_example(tent, {{0, 0, 0}, {10, 10, 4}}, ChartCoding::dense, {{3, 0, 4}, {4, 0, 1}, {4, 1, 2}, {4, 2, 3}});
+}
+
+TEST(FormatExample, DenseChart) {
+  expect_example(tent(), {{0, 0, 0}, {10, 10, 4}}, ChartCoding::dense, {{3, 0, 4}, {4, 0, 1}, {4, 1, 2}, {4, 2, 3}});
+}
+
+TEST(FormatExample, Layer) {
+  const LayerShape shape{AttributeOf::vertex, 1, 8, false};
+  const LayerValues values{{10, 20, 30, 40, 25}, {}};
+  const LayerOrder order(tent());
+  const Buffer blob = encode_layer(values, shape, tent(), order);
+  EXPECT_TRUE(is_in_the_document(blob));
+  EXPECT_EQ(decode_layer(blob, shape, tent(), order), values);
+}
+
+TEST(FormatExample, Polygons) {
+  const Polygons polygons{{0, 0, 1, 1}, {4, 4}, {0, 3, 4, 2, 6, 9, 10, 8}};
+  const LayerOrder order(tent());
+  const Buffer blob = encode_polygons(polygons, tent(), order);
+  EXPECT_TRUE(is_in_the_document(blob));
+  EXPECT_EQ(decode_polygons(blob, tent(), order).of_face, polygons.of_face);
 }
 
 TEST(FormatExample, Tables) {
