@@ -31,7 +31,7 @@ std::string mesh_name(const std::filesystem::path& file, const ImportOptions& op
   return name;
 }
 
-void refuse_taken_name(db::Store& store, VersionId tip, const std::string& name) {
+void refuse_taken(db::Store& store, VersionId tip, const std::string& name) {
   for (const db::MeshRoot& root : store.roots(tip))
     if (root.name == name)
       throw Error(Errc::invalid_argument, fmt::format("the repository already holds a mesh '{}'", name),
@@ -40,7 +40,7 @@ void refuse_taken_name(db::Store& store, VersionId tip, const std::string& name)
 
 mesh_file::MeshData read_file(const std::filesystem::path& file, const ImportOptions& options, ImportReport& report) {
   mesh_file::MeshData data = mesh_file::read_mesh(file, stage(options.progress, "read"));
-  if (data.soup) {
+  if (options.weld.value_or(data.soup)) {
     const std::size_t before = data.positions.size();
     mesh_file::weld_exact(data);
     report.vertices_welded = before - data.positions.size();
@@ -142,7 +142,7 @@ void publish(db::Store& store, const std::string& name, const std::filesystem::p
              EncodedMesh& encoded, const LayerTable& table, MeshRecord& record) {
   const auto writer = store.writer();
   const VersionId tip = writer->tip(options.branch);
-  refuse_taken_name(store, tip, name);
+  refuse_taken(store, tip, name);
   db::CommitInfo info;
   info.branch = options.branch;
   info.expected_tip = tip;
@@ -164,12 +164,16 @@ void publish(db::Store& store, const std::string& name, const std::filesystem::p
 
 }  // namespace
 
+void refuse_taken_name(db::Store& store, const ImportOptions& options, const std::filesystem::path& file) {
+  refuse_taken(store, store.resolve(options.branch), mesh_name(file, options));
+}
+
 ImportReport import_mesh(db::Store& store, const std::filesystem::path& file, const ImportOptions& options,
                          std::string& name) {
   const auto start = std::chrono::steady_clock::now();
   ImportReport report;
   name = mesh_name(file, options);
-  refuse_taken_name(store, store.resolve(options.branch), name);
+  refuse_taken(store, store.resolve(options.branch), name);
   MeshRecord record;
   mesh_file::MeshData data = read_file(file, options, report);
   record.lattice = choose_lattice(data.positions, options);

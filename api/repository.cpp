@@ -115,7 +115,42 @@ VersionRecord Repository::show(std::string_view revision) const {
   return record_of(*store, store->version(version));
 }
 
+namespace {
+
+/// A folder that is gone with the object.
+class ScratchFolder {
+ public:
+  ScratchFolder() : path_(std::filesystem::temp_directory_path() / ("ramcdb-" + db::new_attempt_id())) {}
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The import into a repository that nobody keeps.
+ImportReport try_import(const std::filesystem::path& file, ImportOptions options) {
+  options.dry_run = false;
+  const ScratchFolder scratch;
+  Repository::create(scratch.path());
+  ImportReport report = Repository::open(scratch.path()).import(file, options);
+  report.info.revision = VersionId();
+  return report;
+}
+
+}  // namespace
+
 ImportReport Repository::import(const std::filesystem::path& file, const ImportOptions& options) {
+  if (options.dry_run) {
+    detail::refuse_taken_name(*impl_->store(), options, file);
+    return try_import(file, options);
+  }
   const auto store = impl_->store_for_writing();
   std::string name;
   ImportReport report = detail::import_mesh(*store, file, options, name);

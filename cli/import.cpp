@@ -83,9 +83,9 @@ std::string time_text(const ImportReport& report) {
 std::string report_text(const ImportReport& report) {
   const MeshInfo& info = report.info;
   return one_line(info.mesh) + ": " + counted(info.vertices, "vertex", "vertices") + ", " +
-         counted(info.faces, "face") + " in " + counted(info.charts, "chart") + ", now version " +
-         version_text(info.revision) + "\n" + found_text(info) + changed_text(report) + error_text(report) +
-         size_text(info) + time_text(report);
+         counted(info.faces, "face") + " in " + counted(info.charts, "chart") + ", " +
+         (info.revision ? "now version " + version_text(info.revision) : std::string("nothing was written")) + "\n" +
+         found_text(info) + changed_text(report) + error_text(report) + size_text(info) + time_text(report);
 }
 
 double size_of(const std::filesystem::path& file) {
@@ -150,6 +150,13 @@ void setup_import(CLI::App& app, Run& run) {
       ->type_name("NAME");
   add_lattice_options(verb, *command);
   add_chart_options(verb, *command);
+  verb.add_flag_callback(
+      "--weld", [command] { command->options.weld = true; },
+      "Join vertices at equal positions (default for STL, whose triangles have their own)");
+  verb.add_flag_callback(
+          "--no-weld", [command] { command->options.weld = false; }, "Leave every vertex of an STL apart")
+      ->excludes("--weld");
+  verb.add_flag("--dry-run", command->options.dry_run, "Report what would be found and stored, and write nothing");
   verb.add_flag("--lossless-attributes", command->options.lossless_attributes,
                 "Keep colours, normals and texture coordinates that are floats bit by bit");
   add_message(verb, command->options.message, false);

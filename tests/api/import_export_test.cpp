@@ -120,6 +120,50 @@ TEST(Import, RefusesWhatItCannotTakeWholeAndChangesNothing) {
   EXPECT_EQ(repository->meshes().size(), 1U);
 }
 
+TEST(Import, ADryRunReportsAndWritesNothing) {
+  const TempFolder folder;
+  Repository::create(folder / "r");
+  Repository repository = Repository::open(folder / "r");
+  write_test_mesh(scan(3000), folder / "scan.ply");
+  ImportOptions options;
+  options.chart_faces = 300;
+  options.dry_run = true;
+  const ImportReport tried = repository.import(folder / "scan.ply", options);
+  EXPECT_EQ(tried.info.revision, VersionId());
+  EXPECT_TRUE(repository.meshes().empty());
+  EXPECT_TRUE(repository.log().empty());
+  options.dry_run = false;
+  const ImportReport done = repository.import(folder / "scan.ply", options);
+  EXPECT_EQ(done.info.revision, VersionId(1));
+  EXPECT_EQ(tried.info.charts, done.info.charts);
+  EXPECT_EQ(tried.info.bytes.payload, done.info.bytes.payload);
+  EXPECT_EQ(tried.measured_error, done.measured_error);
+  options.dry_run = true;
+  EXPECT_THROW((void)repository.import(folder / "scan.ply", options), Error) << "the name is taken";
+}
+
+TEST(Import, WeldsSoupsUnlessToldOtherwise) {
+  const TestMesh mesh = sphere(400);
+  const TempFolder folder;
+  Repository::create(folder / "r");
+  Repository repository = Repository::open(folder / "r");
+  write_test_mesh(mesh, folder / "soup.stl");
+  TestMesh twice = mesh;
+  twice.positions.insert(twice.positions.end(), mesh.positions.begin(), mesh.positions.end());
+  write_test_mesh(twice, folder / "twice.ply");
+  const auto vertices = [&](const char* file, std::optional<bool> weld) {
+    ImportOptions options;
+    options.name = file + std::to_string(weld ? 1 + *weld : 0);
+    options.weld = weld;
+    return repository.import(folder / file, options).info.vertices;
+  };
+  const std::size_t count = mesh.positions.size();
+  EXPECT_EQ(vertices("soup.stl", {}), count);
+  EXPECT_EQ(vertices("soup.stl", false), 3 * mesh.faces.size());
+  EXPECT_EQ(vertices("twice.ply", {}), 2 * count);
+  EXPECT_EQ(vertices("twice.ply", true), count);
+}
+
 TEST(Export, OfTheFinestLatticeIsExact) {
   TempRepository repository(scan(500), 200, 30);
   const Snapshot snapshot = repository->snapshot();

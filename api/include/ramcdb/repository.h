@@ -24,7 +24,10 @@ struct ImportOptions {
   std::string name;      ///< of the mesh; the file's stem when empty
   unsigned bits = 16;    ///< step = largest extent / (2^bits - 1); 1..30
   double precision = 0;  ///< not 0: largest coordinate error in model units instead of `bits` (step = 2 * this)
-  std::optional<Lattice> lattice;    ///< instead of both: this very lattice
+  std::optional<Lattice> lattice;  ///< instead of both: this very lattice
+  /// Join vertices at equal positions? When not said, soups of triangles (STL) are welded, other meshes are not.
+  std::optional<bool> weld;
+  bool dry_run = false;              ///< do everything but write: the report says what would be
   bool lossless_attributes = false;  ///< keep colours, normals and texture coordinates that are floats bit by bit
   std::uint32_t chart_faces = 5000;
   bool paper_chartify = false;  ///< the paper's own Lloyd, for comparison
