@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 #include "api/parallel.h"
 #include "api/store_format.h"
+#include "codec/exact_codec.h"
 #include "codec/wire_codec.h"
 #include "ramcdb/error.h"
 
@@ -32,7 +35,7 @@ struct ChartLoader::Job {
   PageChart entry;
   Buffer blob;
   bool with_layers = false;
-  std::vector<Buffer> layers;  ///< as in `entry.layers`
+  std::map<std::uint16_t, Buffer> layers;
 };
 
 Border border_of(const std::vector<WireLoop>& loops, const std::function<const LoadedWire&(WireId)>& wire) {
@@ -84,48 +87,62 @@ LoadedChart ChartLoader::decode(const Job& job) const {
   } catch (const Error& e) {
     throw Error(e.code(), fmt::format("{}: {}", place(at_, job.entry), e.what()), {}, "run `ramcdb verify`");
   }
-  LoadedChart loaded{
-      job.entry, std::move(decoded.chart), std::move(border.keys), decoded.cost, job.blob.size() + kBlobOverhead, {},
-      {}};
+  LoadedChart loaded{job.entry,
+                     std::move(decoded.chart),
+                     std::move(border.keys),
+                     decoded.cost,
+                     job.blob.size() + kBlobOverhead,
+                     {},
+                     {},
+                     {}};
   const std::size_t inner = loaded.chart.positions.size() - loaded.keys.size();
   if (inner != job.entry.inner_vertices || loaded.chart.faces.size() != job.entry.faces)
     throw Error(Errc::corrupt, "the chart's counts are not those of its index page", place(at_, job.entry),
                 "run `ramcdb verify`");
   for (std::uint32_t i = 0; i < inner; ++i) loaded.keys.push_back({VertexKey::Where::chart, job.entry.id.value, i});
-  if (job.with_layers) decode_layers(job, loaded);
+  try {
+    if (at_.record().exact) decode_exact(job, loaded);
+    if (job.with_layers) decode_layers(job, loaded);
+  } catch (const Error& e) {
+    throw Error(e.code(), fmt::format("{}: {}", place(at_, job.entry), e.what()), {}, "run `ramcdb verify`");
+  }
   return loaded;
 }
 
+/// Exact positions belong to the geometry; the other layers are read when they are asked for.
 void ChartLoader::read_layers(Job& job, db::BlobReader& reader) const {
-  job.with_layers = true;
   for (const LayerRef& ref : job.entry.layers)
-    job.layers.push_back(
-        reader.get({db::Kind::attribute, at_.root().mesh, job.entry.id.value, ref.version, ref.layer}));
+    if (job.with_layers || (at_.record().exact && ref.layer == kExactLayer))
+      job.layers.emplace(
+          ref.layer, reader.get({db::Kind::attribute, at_.root().mesh, job.entry.id.value, ref.version, ref.layer}));
+}
+
+void ChartLoader::decode_exact(const Job& job, LoadedChart& loaded) const {
+  const auto blob = job.layers.find(kExactLayer);
+  if (blob == job.layers.end()) throw Error(Errc::corrupt, "the chart has no exact positions");
+  const MeshRecord& record = at_.record();
+  loaded.exact = codec::decode_exact(blob->second, loaded.chart.positions, record.lattice, *record.exact);
 }
 
 void ChartLoader::decode_layers(const Job& job, LoadedChart& loaded) const {
   const auto& layers = at_.layers().layers;
   if (layers.empty()) return;
+  std::size_t known = at_.record().exact.has_value();
   if (at_.layers().polygons()) loaded.polygons = only_triangles(loaded.chart.faces.size());
   const codec::LayerOrder order(loaded.chart);
   loaded.layers.resize(layers.size());
-  std::size_t next = 0;
-  try {
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-      const bool has_blob = next < job.layers.size() && job.entry.layers[next].layer == layers[i].id;
-      if (layers[i].coding == LayerCoding::polygons) {
-        if (has_blob) loaded.polygons = codec::decode_polygons(job.layers[next], loaded.chart, order);
-      } else if (has_blob) {
-        loaded.layers[i] = codec::decode_layer(job.layers[next], layers[i].shape(), loaded.chart, order);
-      } else {
-        throw Error(Errc::corrupt, fmt::format("the chart has no values of '{}'", layers[i].info.name));
-      }
-      next += has_blob;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const auto blob = job.layers.find(layers[i].id);
+    known += blob != job.layers.end();
+    if (layers[i].coding == LayerCoding::polygons) {
+      if (blob != job.layers.end()) loaded.polygons = codec::decode_polygons(blob->second, loaded.chart, order);
+    } else if (blob != job.layers.end()) {
+      loaded.layers[i] = codec::decode_layer(blob->second, layers[i].shape(), loaded.chart, order);
+    } else {
+      throw Error(Errc::corrupt, fmt::format("the chart has no values of '{}'", layers[i].info.name));
     }
-    if (next != job.layers.size()) throw Error(Errc::corrupt, "the chart has a layer that the mesh does not know");
-  } catch (const Error& e) {
-    throw Error(e.code(), fmt::format("{}: {}", place(at_, job.entry), e.what()), {}, "run `ramcdb verify`");
   }
+  if (known != job.layers.size()) throw Error(Errc::corrupt, "the chart has a layer that the mesh does not know");
 }
 
 std::vector<LoadedChart> ChartLoader::load(std::span<const ChartId> charts, unsigned threads, ReadCost* cost,
@@ -142,8 +159,9 @@ std::vector<LoadedChart> ChartLoader::load(std::span<const ChartId> charts, unsi
     if (jobs.size() % kBatch == kBatch - 1) reader->renew();
     const PageChart& entry = *find_chart(*leaf->leaf, id);
     read_wires(*leaf->leaf, entry, *reader);
-    jobs.push_back({entry, reader->get({db::Kind::chart, at_.root().mesh, id.value, entry.version, 0}), false, {}});
-    if (with_layers) read_layers(jobs.back(), *reader);
+    jobs.push_back(
+        {entry, reader->get({db::Kind::chart, at_.root().mesh, id.value, entry.version, 0}), with_layers, {}});
+    read_layers(jobs.back(), *reader);
   }
   if (cost) {
     cost->blobs += reader->blobs_read();

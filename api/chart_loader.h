@@ -20,6 +20,7 @@ struct LoadedChart {
   std::vector<VertexKey> keys;  ///< per local vertex; border vertices may repeat a key
   codec::ChartCost cost;
   std::uint64_t blob_bytes = 0;            ///< checksum included
+  std::vector<Point> exact;                ///< per local vertex, where the mesh keeps positions to the last bit
   std::vector<codec::LayerValues> layers;  ///< per layer of the mesh, when asked for; those of polygons are empty
   codec::Polygons polygons;                ///< when asked for and the mesh has any
 };
@@ -48,6 +49,7 @@ class ChartLoader {
   void read_wires(const LeafPage& leaf, const PageChart& chart, db::BlobReader& reader);
   void read_layers(Job& job, db::BlobReader& reader) const;
   [[nodiscard]] LoadedChart decode(const Job& job) const;
+  void decode_exact(const Job& job, LoadedChart& loaded) const;
   void decode_layers(const Job& job, LoadedChart& loaded) const;
 
   const Snapshot::Impl& at_;

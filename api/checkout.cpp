@@ -28,6 +28,7 @@ CheckoutReport report_for(const Snapshot& snapshot, const RegionMesh& region, co
   report.bytes_read = cost.bytes;
   report.blobs_read = cost.blobs;
   report.pages_read = cost.pages;
+  report.local_origin = written.local_origin;
   for (const auto& dropped : written.left_out) report.left_out.push_back({dropped.what, dropped.count});
   return report;
 }
@@ -80,16 +81,16 @@ EditedFile read_edited_file(const std::shared_ptr<db::Store>& store, const std::
   }
   edited.region = load_region(edited.parts, 1, nullptr, true);
   const mesh_file::MeshData data = mesh_file::read_mesh(file);
-  const Lattice& lattice = edited.parts.front().at->record().lattice;
-  const bool trust_ids = edited.parts.size() == 1 && edited.sidecar.ids_version == edited.parts.front().at->version();
+  const Snapshot::Impl& at = *edited.parts.front().at;
+  const bool trust_ids = edited.parts.size() == 1 && edited.sidecar.ids_version == at.version();
   try {
-    FileEdit found = edit_in_file(edited.region, lattice, data, edited.sidecar.local_origin, trust_ids);
+    FileEdit found = edit_in_file(at, edited.region, data, edited.sidecar.local_origin, trust_ids);
     edited.edit.moves = std::move(found.moves);
-    edited.edit.layers = changed_values(edited.region, edited.parts.front().at->layers(), found.attributes);
+    edited.edit.layers = changed_values(edited.region, at.layers(), found.attributes);
   } catch (const Error& e) {
     throw Error(e.code(), fmt::format("{}: {}", file.string(), e.what()));
   }
-  edited.change = describe_edit(edited.region, edited.edit, lattice);
+  edited.change = describe_edit(edited.region, edited.edit);
   return edited;
 }
 

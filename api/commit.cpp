@@ -5,6 +5,7 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -18,12 +19,9 @@
 namespace ramcdb::detail {
 namespace {
 
-double distance(const Lattice& lattice, const VertexMove& move) {
+double distance(const VertexMove& move) {
   double sum = 0;
-  for (int a = 0; a < 3; ++a) {
-    const double d = (static_cast<double>(move.to[a]) - static_cast<double>(move.from[a])) * lattice.step;
-    sum += d * d;
-  }
+  for (int a = 0; a < 3; ++a) sum += (move.target[a] - move.position[a]) * (move.target[a] - move.position[a]);
   return std::sqrt(sum);
 }
 
@@ -92,7 +90,7 @@ CommitReport report_for(const ChangeReport& change, const EncodedEdit& edit) {
 void put_edit(const EncodedEdit& edit, MeshId mesh, db::Writer& writer, MeshRecord& record) {
   for (const auto& [id, chart] : edit.charts) {
     for (const RecodedLayer& layer : chart.layers) {
-      record.layer_bytes += layer.blob.size() + kBlobOverhead - layer.bytes_before;
+      record.bytes_of_layer(layer.layer) += layer.blob.size() + kBlobOverhead - layer.bytes_before;
       writer.put({db::Kind::attribute, mesh, id.value, {}, layer.layer}, layer.blob);
     }
     if (chart.blob.empty()) continue;
@@ -183,14 +181,14 @@ std::map<ChartId, std::uint64_t> values_by_chart(const RegionMesh& region, std::
 
 }  // namespace
 
-ChangeReport describe_edit(const RegionMesh& region, const Edit& edit, const Lattice& lattice) {
+ChangeReport describe_edit(const RegionMesh& region, const Edit& edit) {
   const std::vector<VertexMove>& moves = edit.moves;
   ChangeReport report;
   std::map<std::uint64_t, const VertexMove*> by_key;
   double squares = 0;
   for (const VertexMove& move : moves) {
     by_key.emplace(move.key.packed(), &move);
-    const double d = distance(lattice, move);
+    const double d = distance(move);
     report.max_displacement = std::max(report.max_displacement, d);
     squares += d * d;
   }
@@ -219,7 +217,7 @@ ChangeReport describe_edit(const RegionMesh& region, const Edit& edit, const Lat
     ChangeReport::ChartChange change{region.charts[c], moved_in[c].size(), 0,
                                      changed == values.end() ? 0 : changed->second};
     for (const std::uint32_t v : moved_in[c])
-      change.max_displacement = std::max(change.max_displacement, distance(lattice, *move_of[v]));
+      change.max_displacement = std::max(change.max_displacement, distance(*move_of[v]));
     report.per_chart.push_back(change);
     report.charts_touched.push_back(region.charts[c]);
   }
@@ -250,9 +248,8 @@ std::string attempt_name(std::string_view nonce, std::string_view branch, const 
     for (const std::uint64_t number : value.numbers) add(number);
   };
   for (const VertexMove& move : edit.moves) {
-    const std::int32_t to[3] = {move.to.x, move.to.y, move.to.z};
     add(move.key.packed());
-    XXH3_128bits_update(&state, to, sizeof to);
+    for (int axis = 0; axis < 3; ++axis) add(std::bit_cast<std::uint64_t>(move.target[axis]));
   }
   for (const LayerEdit& layer : edit.layers) {
     add(layer.layer.id);

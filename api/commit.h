@@ -12,7 +12,7 @@
 namespace ramcdb::detail {
 
 /// What an edit means, before anything is coded.
-[[nodiscard]] ChangeReport describe_edit(const RegionMesh& region, const Edit& edit, const Lattice& lattice);
+[[nodiscard]] ChangeReport describe_edit(const RegionMesh& region, const Edit& edit);
 
 /// Fills in tip, changed_by_others and conflicts of a report on moves in `parts`, against the tip of `branch`.
 void compare_with_tip(ChangeReport& report, std::span<const RegionPart> parts, std::string_view branch);

@@ -46,15 +46,10 @@ void drop_equal(std::set<PageKey>& a, std::set<PageKey>& b) {
 /// Sums up displacements over vertices, each counted once though several charts share it.
 class Displacements {
  public:
-  explicit Displacements(double step) : step_(step) {}
-
-  /// Returns the displacement in model units.
-  double add(const VertexKey& key, LatticePoint from, LatticePoint to) {
+  /// Returns the displacement.
+  double add(const VertexKey& key, const Point& from, const Point& to) {
     double sum = 0;
-    for (int a = 0; a < 3; ++a) {
-      const double d = (static_cast<double>(to[a]) - static_cast<double>(from[a])) * step_;
-      sum += d * d;
-    }
+    for (int a = 0; a < 3; ++a) sum += (to[a] - from[a]) * (to[a] - from[a]);
     if (seen_.insert(key.packed()).second) squares_ += sum;
     return std::sqrt(sum);
   }
@@ -64,25 +59,33 @@ class Displacements {
   }
 
  private:
-  double step_;
   double squares_ = 0;
   std::set<std::uint64_t> seen_;
 };
 
-/// The new point of every vertex of a chart; empty when the two do not have the same connectivity. Border vertices are
-/// told apart by their keys, inner ones by the faces around them, for re-encoding renumbers them.
-std::vector<LatticePoint> targets_of(const LoadedChart& a, const LoadedChart& b) {
+/// Positions in model units: of a lossless mesh to the last bit.
+std::vector<Point> positions_of(const LoadedChart& loaded, const Lattice& lattice) {
+  if (!loaded.exact.empty()) return loaded.exact;
+  std::vector<Point> positions;
+  for (const LatticePoint p : loaded.chart.positions) positions.push_back(lattice.position(p));
+  return positions;
+}
+
+/// The new position of every vertex of a chart; empty when the two do not have the same connectivity. Border vertices
+/// are told apart by their keys, inner ones by the faces around them, for re-encoding renumbers them.
+std::vector<Point> targets_of(const LoadedChart& a, const LoadedChart& b, const Lattice& lattice) {
   if (a.chart.faces.size() != b.chart.faces.size() || a.chart.positions.size() != b.chart.positions.size()) return {};
   const TriangleCorners faces_a(a.chart.faces), faces_b(b.chart.faces);
   const Matching matching = match_faces(faces_a.over(a.chart.positions), faces_b.over(b.chart.positions));
   if (matching.unmatched) return {};
-  std::vector<LatticePoint> to = a.chart.positions;
+  const std::vector<Point> there = positions_of(b, lattice);
+  std::vector<Point> to = positions_of(a, lattice);
   std::vector<bool> known(to.size(), false);
   for (std::size_t f = 0; f < a.chart.faces.size(); ++f)
     for (std::uint32_t i = 0; i < 3; ++i) {
       const std::uint32_t v = a.chart.faces[f][i];
       const FaceMatch m = matching.matches[f];
-      const LatticePoint p = b.chart.positions[b.chart.faces[m.face][(i + m.turn) % 3]];
+      const Point& p = there[b.chart.faces[m.face][(i + m.turn) % 3]];
       if (known[v] && to[v] != p) return {};
       to[v] = p;
       known[v] = true;
@@ -90,14 +93,15 @@ std::vector<LatticePoint> targets_of(const LoadedChart& a, const LoadedChart& b)
   return to;
 }
 
-void compare_charts(const LoadedChart& a, const LoadedChart& b, Displacements& sum, DiffReport& report) {
+void compare_charts(const LoadedChart& a, const LoadedChart& b, const Lattice& lattice, Displacements& sum,
+                    DiffReport& report) {
   ChangeReport::ChartChange change{a.entry.id, 0, 0};
-  const auto to = targets_of(a, b);
+  const std::vector<Point> from = positions_of(a, lattice), to = targets_of(a, b, lattice);
   std::set<std::uint64_t> counted;
   for (std::size_t v = 0; v < to.size(); ++v) {
-    if (to[v] == a.chart.positions[v]) continue;
+    if (to[v] == from[v]) continue;
     change.vertices_moved += counted.insert(a.keys[v].packed()).second;
-    change.max_displacement = std::max(change.max_displacement, sum.add(a.keys[v], a.chart.positions[v], to[v]));
+    change.max_displacement = std::max(change.max_displacement, sum.add(a.keys[v], from[v], to[v]));
   }
   report.max_displacement = std::max(report.max_displacement, change.max_displacement);
   report.per_chart.push_back(change);
@@ -128,8 +132,9 @@ DiffReport diff_versions(const Snapshot::Impl& from, const Snapshot::Impl& to, u
 
   const auto before = ChartLoader(from).load(report.changed, threads);
   const auto after = ChartLoader(to).load(report.changed, threads);
-  Displacements sum(from.record().lattice.step);
-  for (std::size_t i = 0; i < before.size(); ++i) compare_charts(before[i], after[i], sum, report);
+  Displacements sum;
+  for (std::size_t i = 0; i < before.size(); ++i)
+    compare_charts(before[i], after[i], from.record().lattice, sum, report);
   report.vertices_moved = sum.count();
   report.rms_displacement = sum.rms();
   return report;

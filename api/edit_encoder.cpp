@@ -1,18 +1,20 @@
 #include "api/edit_encoder.h"
 
 #include <algorithm>
+#include <bit>
 #include <optional>
 #include <set>
 
 #include "api/parallel.h"
 #include "api/region_query.h"
 #include "api/store_format.h"
+#include "codec/exact_codec.h"
 #include "codec/wire_codec.h"
 
 namespace ramcdb::detail {
 namespace {
 
-using MoveTable = std::unordered_map<std::uint64_t, LatticePoint>;
+using MoveTable = std::unordered_map<std::uint64_t, const VertexMove*>;
 
 /// Everything that vertices touch. The snapshot of a chart or wire is that of the region's part which knows it, and
 /// the newest part's for all outside the region.
@@ -88,10 +90,16 @@ class Touched {
 
 void move_points(std::span<LatticePoint> points, std::span<const VertexKey> keys, const MoveTable& moves) {
   for (std::size_t v = 0; v < points.size(); ++v)
-    if (const auto move = moves.find(keys[v].packed()); move != moves.end()) points[v] = move->second;
+    if (const auto move = moves.find(keys[v].packed()); move != moves.end()) points[v] = move->second->to;
 }
 
-RecodedWire recode_wire(const LoadedWire& loaded, const MoveTable& moves) {
+void move_positions(std::span<Point> positions, std::span<const VertexKey> keys, const MoveTable& moves) {
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    if (const auto move = moves.find(keys[v].packed()); move != moves.end()) positions[v] = move->second->target;
+}
+
+/// Empty when all its points stay.
+std::optional<RecodedWire> recode_wire(const LoadedWire& loaded, const MoveTable& moves) {
   RecodedWire recoded{loaded.entry, {}, loaded.blob_bytes};
   Wire wire = loaded.wire;
   std::vector<VertexKey> keys{{VertexKey::Where::corner, loaded.entry.begin.value, 0}};
@@ -99,6 +107,7 @@ RecodedWire recode_wire(const LoadedWire& loaded, const MoveTable& moves) {
     keys.push_back({VertexKey::Where::wire, loaded.entry.id.value, i});
   keys.push_back({VertexKey::Where::corner, loaded.entry.end.value, 0});
   move_points(wire.points, keys, moves);
+  if (wire.points == loaded.wire.points) return std::nullopt;
   if (loaded.entry.inner_points) recoded.blob = codec::encode_wire(wire);
   return recoded;
 }
@@ -162,25 +171,50 @@ class ChartRecoder {
     recoded.cost_before = recoded.cost = loaded.cost;
     std::optional<codec::EncodedChart> encoded;
     if (moved) encoded = recode_geometry(loaded, recoded);
-    const bool reordered = moved && !loaded.entry.layers.empty() && !keeps_order(loaded.chart, *encoded);
+    if (moved && at_.record().exact) recode_exact(loaded, encoded, recoded);
+    const bool reordered = encoded && !loaded.entry.layers.empty() && !keeps_order(loaded.chart, *encoded);
     if (reordered && loaded.layers.empty()) loaded = with_layers(loaded.entry.id);
     if (values_changed || reordered) recode_layers(loaded, encoded, reordered, recoded);
     return recoded;
   }
 
  private:
-  codec::EncodedChart recode_geometry(const LoadedChart& loaded, RecodedChart& recoded) const {
+  /// Empty when all vertices keep their lattice points.
+  std::optional<codec::EncodedChart> recode_geometry(const LoadedChart& loaded, RecodedChart& recoded) const {
     Chart moved = loaded.chart;
     move_points(moved.positions, loaded.keys, moves_);
+    if (moved.positions == loaded.chart.positions) return std::nullopt;
     const MeshRecord& record = at_.record();
-    auto encoded = codec::encode_chart(moved, record.profile, at_.tables(record.table), record.range);
-    recoded.blob = encoded.blob;
-    recoded.cost = encoded.cost;
-    recoded.expanded_range = encoded.expanded_range;
+    std::optional encoded = codec::encode_chart(moved, record.profile, at_.tables(record.table), record.range);
+    recoded.blob = encoded->blob;
+    recoded.cost = encoded->cost;
+    recoded.expanded_range = encoded->expanded_range;
     recoded.entry.table = record.table;
     recoded.entry.box = {};
     for (const LatticePoint p : moved.positions) recoded.entry.box.add(p);
     return encoded;
+  }
+
+  void recode_exact(const LoadedChart& loaded, const std::optional<codec::EncodedChart>& encoded,
+                    RecodedChart& recoded) const {
+    std::vector<Point> exact = loaded.exact;
+    move_positions(exact, loaded.keys, moves_);
+    if (encoded) {
+      std::vector<Point> renumbered;
+      for (const std::uint32_t v : encoded->source_vertex) renumbered.push_back(exact[v]);
+      exact = std::move(renumbered);
+    }
+    const auto& points = encoded ? encoded->decoded.positions : loaded.chart.positions;
+    const MeshRecord& record = at_.record();
+    put_layer(loaded.entry, kExactLayer, codec::encode_exact(exact, points, record.lattice, *record.exact), recoded);
+  }
+
+  /// Notes a layer's blob unless it is as it was.
+  void put_layer(const PageChart& entry, std::uint16_t layer, Buffer blob, RecodedChart& recoded) const {
+    const auto ref = std::ranges::find(entry.layers, layer, &LayerRef::layer);
+    const Buffer before =
+        at_.store().reader()->get({db::Kind::attribute, at_.root().mesh, entry.id.value, ref->version, layer});
+    if (before != blob) recoded.layers.push_back({layer, std::move(blob), before.size() + kBlobOverhead});
   }
 
   [[nodiscard]] LoadedChart with_layers(ChartId id) const {
@@ -193,11 +227,9 @@ class ChartRecoder {
     const auto& layers = at_.layers().layers;
     const Chart& chart = encoded ? encoded->decoded : loaded.chart;
     const codec::LayerOrder order(chart);
-    const auto reader = at_.store().reader();
     for (std::size_t i = 0; i < layers.size(); ++i) {
-      const auto ref = std::find_if(loaded.entry.layers.begin(), loaded.entry.layers.end(),
-                                    [&](const LayerRef& r) { return r.layer == layers[i].id; });
-      if (ref == loaded.entry.layers.end()) continue;  // polygons of triangles alone
+      if (std::ranges::find(loaded.entry.layers, layers[i].id, &LayerRef::layer) == loaded.entry.layers.end())
+        continue;  // polygons of triangles alone
       Buffer blob;
       if (layers[i].coding == LayerCoding::polygons) {
         if (!all) continue;
@@ -209,9 +241,7 @@ class ChartRecoder {
         blob = codec::encode_layer(encoded ? renumbered(loaded.layers[i], shape, *encoded) : loaded.layers[i], shape,
                                    chart, order);
       }
-      const Buffer before =
-          reader->get({db::Kind::attribute, at_.root().mesh, loaded.entry.id.value, ref->version, ref->layer});
-      if (before != blob) recoded.layers.push_back({layers[i].id, std::move(blob), before.size() + kBlobOverhead});
+      put_layer(loaded.entry, layers[i].id, std::move(blob), recoded);
     }
   }
 
@@ -257,14 +287,34 @@ std::vector<VertexKey> keys_of(std::span<const LayerEdit> layers) {
 
 }  // namespace
 
+std::optional<VertexMove> move_to(const Snapshot::Impl& at, const RegionMesh& region, std::size_t vertex,
+                                  const Point& p) {
+  const Lattice& lattice = at.record().lattice;
+  VertexMove move{region.keys[vertex], region.points[vertex], {}, {}, at.record().rounded(p)};
+  move.to = lattice.snap(move.target);
+  if (!at.record().exact) {
+    if (move.to == move.from) return std::nullopt;
+    move.position = lattice.position(move.from);
+    move.target = lattice.position(move.to);
+    return move;
+  }
+  move.position = region.exact[vertex];
+  const auto same_bits = [&](int axis) {
+    return std::bit_cast<std::uint64_t>(move.position[axis]) == std::bit_cast<std::uint64_t>(move.target[axis]);
+  };
+  if (same_bits(0) && same_bits(1) && same_bits(2)) return std::nullopt;
+  return move;
+}
+
 EncodedEdit encode_edit(std::span<const RegionPart> parts, const Edit& edit, unsigned threads) {
   const std::vector<VertexKey> moved_keys = keys_of(edit.moves), value_keys = keys_of(edit.layers);
   const Touched moved(parts, moved_keys), valued(parts, value_keys);
   MoveTable table;
   EncodedEdit encoded;
   for (const VertexMove& move : edit.moves) {
-    table.emplace(move.key.packed(), move.to);
-    if (move.key.where == VertexKey::Where::corner) encoded.corners.emplace(CornerId(move.key.id), move.to);
+    table.emplace(move.key.packed(), &move);
+    if (move.from != move.to && move.key.where == VertexKey::Where::corner)
+      encoded.corners.emplace(CornerId(move.key.id), move.to);
   }
   std::map<ChartId, const Snapshot::Impl*> charts = moved.charts(), with_values = valued.charts();
   for (const LayerEdit& layer : edit.layers)
@@ -286,7 +336,7 @@ EncodedEdit encode_edit(std::span<const RegionPart> parts, const Edit& edit, uns
       if (!chart.blob.empty() || !chart.layers.empty()) encoded.charts.emplace(chart.base.id, std::move(chart));
     for (const auto& [id, wire] : loader.wires())
       if (moved.wires().contains(id) && !encoded.wires.contains(id))
-        encoded.wires.emplace(id, recode_wire(wire, table));
+        if (auto moved_wire = recode_wire(wire, table)) encoded.wires.emplace(id, *std::move(moved_wire));
   }
   return encoded;
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -12,11 +13,19 @@
 
 namespace ramcdb::detail {
 
-/// Where a vertex goes.
+/// Where a vertex goes. In a lossless mesh it may go less than a lattice step.
 struct VertexMove {
   VertexKey key;
   LatticePoint from, to;
+  Point position, target;  ///< model units; of other meshes those of `from` and `to`
+
+  friend bool operator==(const VertexMove&, const VertexMove&) = default;
 };
+
+/// The move of a vertex of a region to `p`; none when the mesh would keep it where it is. Throws invalid_argument and
+/// limit_exceeded for places that the mesh's lattice does not have.
+[[nodiscard]] std::optional<VertexMove> move_to(const Snapshot::Impl& at, const RegionMesh& region, std::size_t vertex,
+                                                const Point& p);
 
 struct RecodedLayer {
   std::uint16_t layer = 0;
@@ -57,10 +66,11 @@ struct Edit {
 
 /// Codes the charts and wires that an edit touches. A moved inner vertex touches its chart; a point of a wire, the wire
 /// and every chart on it; a corner, all wires that end there and all charts around it, also those outside the region,
-/// whose other vertices stay. A changed value touches its layer in the same charts, and nothing else. No connectivity
-/// changes, so wires, corners and loops keep their ids. Layers follow connectivity, so they stay when vertices move;
-/// only where a component has no border to begin at may another order of its faces make them new.
-/// \param parts the region that the keys belong to; keys of one part's charts refer to its version.
+/// whose other vertices stay; the exact positions of a lossless mesh follow its charts. A changed value touches its
+/// layer in the same charts, and nothing else. No connectivity changes, so wires, corners and loops keep their ids.
+/// Layers follow connectivity, so they stay when vertices move; only where a component has no border to begin at may
+/// another order of its faces make them new. \param parts the region that the keys belong to; keys of one part's charts
+/// refer to its version.
 [[nodiscard]] EncodedEdit encode_edit(std::span<const RegionPart> parts, const Edit& edit, unsigned threads);
 
 }  // namespace ramcdb::detail

@@ -51,20 +51,21 @@ void check_connectivity(const Patch& patch) {
 std::vector<VertexMove> moves_of(const Patch& patch) {
   check_connectivity(patch);
   const auto& region = patch.region();
-  const Lattice& lattice = patch.base().lattice();
-  std::vector<std::optional<LatticePoint>> target(region.points.size());
+  std::vector<std::optional<VertexMove>> found(region.points.size());
+  std::vector<bool> known(region.points.size(), false);
   for (const auto v : patch.mesh().all_vertices()) {
     const auto p = patch.mesh().point(v);
-    const LatticePoint snapped = lattice.snap({p[0], p[1], p[2]});
-    auto& to = target[patch.mesh().property(patch.region_property(), v)];
-    if (to && *to != snapped)
+    const std::uint32_t vertex = patch.mesh().property(patch.region_property(), v);
+    auto move = detail::move_to(patch.base().impl(), region, vertex, {p[0], p[1], p[2]});
+    if (known[vertex] && move != found[vertex])
       throw Error(Errc::invalid_argument, "two copies of one non-manifold vertex moved apart", place(p),
                   "move vertices with equal keys together");
-    to = snapped;
+    found[vertex] = std::move(move);
+    known[vertex] = true;
   }
   std::vector<VertexMove> moves;
-  for (std::size_t v = 0; v < region.points.size(); ++v)
-    if (target[v] && *target[v] != region.points[v]) moves.push_back({region.keys[v], region.points[v], *target[v]});
+  for (const auto& move : found)
+    if (move) moves.push_back(*move);
   return moves;
 }
 
@@ -94,7 +95,7 @@ class EditTransaction::Impl {
   [[nodiscard]] ChangeReport status() const {
     require_open();
     const Collected all = collect();
-    ChangeReport report = detail::describe_edit(all.region, all.edit, base_.lattice());
+    ChangeReport report = detail::describe_edit(all.region, all.edit);
     const detail::RegionPart part{&base_.impl(), all.region.charts};
     detail::compare_with_tip(report, std::span(&part, 1), branch_);
     return report;
@@ -104,7 +105,7 @@ class EditTransaction::Impl {
     require_open();
     const Collected all = collect();
     const detail::RegionPart part{&base_.impl(), all.region.charts};
-    const ChangeReport change = detail::describe_edit(all.region, all.edit, base_.lattice());
+    const ChangeReport change = detail::describe_edit(all.region, all.edit);
     const std::string attempt = detail::attempt_name(nonce_, options.branch, all.edit);
     CommitReport report = detail::commit_edit(std::span(&part, 1), change, all.edit, options, attempt);
     if (report.conflicts.empty()) abort();
@@ -129,7 +130,7 @@ class EditTransaction::Impl {
     for (const auto& patch : patches_) {
       for (const VertexMove& move : moves_of(*patch)) {
         const auto [it, is_new] = moves.emplace(move.key.packed(), move);
-        if (!is_new && it->second.to != move.to) refuse_split(move);
+        if (!is_new && it->second != move) refuse_split(move);
       }
       for (auto& edit : detail::changed_values(patch->region(), base_.impl().layers(), patch->attributes())) {
         detail::LayerEdit& all = layers[edit.layer.id];
@@ -153,7 +154,7 @@ class EditTransaction::Impl {
   }
 
   [[noreturn]] void refuse_split(const VertexMove& move) const {
-    const Point p = base_.position(move.from);
+    const Point& p = move.position;
     throw Error(Errc::invalid_argument, "two patches moved their shared vertex to different places",
                 place({p.x, p.y, p.z}), "check both regions out as one patch");
   }

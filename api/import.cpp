@@ -49,15 +49,17 @@ mesh_file::MeshData read_file(const std::filesystem::path& file, const ImportOpt
   return data;
 }
 
-/// Snaps every position, and measures how far the farthest moved along an axis. The file's positions become lattice
-/// points too, so that polygons are cut by these: the same however often a mesh goes out and in.
-std::vector<LatticePoint> snap_to(const Lattice& lattice, mesh_file::MeshData& data, double& measured_error) {
+/// Snaps every position, and measures how far the farthest moved along an axis: of numbers that are all float32, to
+/// the float32 that the lattice point is written as. The file's positions become lattice points too, so that polygons
+/// are cut by these: the same however often a mesh goes out and in.
+std::vector<LatticePoint> snap_to(const Lattice& lattice, NumberType type, mesh_file::MeshData& data,
+                                  double& measured_error) {
   std::vector<LatticePoint> points;
   points.reserve(data.positions.size());
   for (Point& p : data.positions) {
     const LatticePoint snapped = lattice.snap(p);
     const Point q = lattice.position(snapped);
-    for (int a = 0; a < 3; ++a) measured_error = std::max(measured_error, std::abs(q[a] - p[a]));
+    for (int a = 0; a < 3; ++a) measured_error = std::max(measured_error, std::abs(as_type(q[a], type) - p[a]));
     p = {static_cast<double>(snapped.x), static_cast<double>(snapped.y), static_cast<double>(snapped.z)};
     points.push_back(snapped);
   }
@@ -96,16 +98,18 @@ void note_encoding(MeshRecord& record, const EncodedMesh& encoded) {
   for (const Buffer& wire : encoded.wires)
     if (!wire.empty()) record.wire_bytes += wire.size() + kBlobOverhead;
   for (const auto& chart : encoded.layers)
-    for (const LayerSource::Blob& layer : chart) record.layer_bytes += layer.bytes.size() + kBlobOverhead;
+    for (const LayerSource::Blob& layer : chart)
+      record.bytes_of_layer(layer.layer) += layer.bytes.size() + kBlobOverhead;
 }
 
 /// The layer table has a key of its own among the layers: chart 0.
 void put_layers(db::Writer& writer, MeshId mesh, EncodedMesh& encoded, const LayerTable& table, MeshRecord& record) {
-  if (table.empty()) return;
-  Buffer blob = encode_layer_table(table);
-  record.layers = writer.version();
-  record.table_bytes += blob.size() + kBlobOverhead;
-  writer.put({db::Kind::attribute, mesh, 0, {}, 0}, std::move(blob));
+  if (!table.empty()) {
+    Buffer blob = encode_layer_table(table);
+    record.layers = writer.version();
+    record.table_bytes += blob.size() + kBlobOverhead;
+    writer.put({db::Kind::attribute, mesh, 0, {}, 0}, std::move(blob));
+  }
   for (std::uint32_t c = 0; c < encoded.layers.size(); ++c)
     for (LayerSource::Blob& layer : encoded.layers[c])
       writer.put({db::Kind::attribute, mesh, c + 1, {}, layer.layer}, std::move(layer.bytes));
@@ -176,14 +180,21 @@ ImportReport import_mesh(db::Store& store, const std::filesystem::path& file, co
   refuse_taken(store, store.resolve(options.branch), name);
   MeshRecord record;
   mesh_file::MeshData data = read_file(file, options, report);
-  record.lattice = choose_lattice(data.positions, options);
+  const NumberType type = type_of(data.positions);
+  record.lattice = choose_lattice(data.positions, type, options);
   record.target_faces = options.chart_faces;
-  std::vector<LatticePoint> points = snap_to(record.lattice, data, report.measured_error);
+  std::vector<Point> exact;
+  if (options.lossless) {
+    record.exact = type;
+    exact = data.positions;
+  }
+  std::vector<LatticePoint> points = snap_to(record.lattice, type, data, report.measured_error);
+  if (options.lossless) report.measured_error = 0;
   const mesh_file::Triangulation cut = mesh_file::triangulate(data);
   record.polygons = report.polygons = cut.polygons;
   report.polygons_as_fans = cut.fans;
   const chartify::CanonicalMesh canonical = chartify::canonical_order({std::move(points), triangles_of(data, cut)});
-  const LayerSource layers(data, cut, canonical, options.lossless_attributes);
+  const LayerSource layers(data, cut, canonical, record, exact, options.lossless || options.lossless_attributes);
   note_topology(record, canonical.mesh);
   for (const LatticePoint p : canonical.mesh.positions) record.range.add(p);
 

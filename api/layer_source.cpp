@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "codec/exact_codec.h"
+
 namespace ramcdb::detail {
 
 /// Where the vertices, corners and faces of a coded chart stand in the file.
@@ -15,8 +17,9 @@ struct LayerSource::Places {
 };
 
 LayerSource::LayerSource(const mesh_file::MeshData& data, const mesh_file::Triangulation& cut,
-                         const chartify::CanonicalMesh& mesh, bool lossless)
-    : data_(data), cut_(cut), mesh_(mesh) {
+                         const chartify::CanonicalMesh& mesh, const MeshRecord& record, const std::vector<Point>& exact,
+                         bool lossless_attributes)
+    : data_(data), cut_(cut), mesh_(mesh), record_(record), exact_(exact) {
   std::uint16_t id = 0;
   if (cut.polygons) {
     Layer layer;
@@ -26,7 +29,8 @@ LayerSource::LayerSource(const mesh_file::MeshData& data, const mesh_file::Trian
     layer.info.of = AttributeOf::face;
     table_.layers.push_back(layer);
   }
-  for (const Attribute& attribute : data.attributes) table_.layers.push_back(layer_for(attribute, ++id, lossless));
+  for (const Attribute& attribute : data.attributes)
+    table_.layers.push_back(layer_for(attribute, ++id, lossless_attributes));
   table_.references = data.references;
   if (table_.layers.empty()) return;
   turns_.resize(mesh.mesh.faces.size());
@@ -56,7 +60,7 @@ LayerSource::Places LayerSource::places_in_file(const chartify::NetChart& chart,
   for (const std::uint32_t corner : encoded.source_corner) {
     const std::uint32_t face = chart.mesh_face[corner / 3], triangle = mesh_.source_face[face];
     places.faces.push_back(cut_.face[triangle]);
-    for (std::uint32_t i = 0; i < 3; ++i)
+    for (std::uint32_t i = 0; i < 3 && !turns_.empty(); ++i)
       places.corners.push_back(cut_.corners[triangle][(corner + i + turns_[face]) % 3]);
   }
   return places;
@@ -72,6 +76,12 @@ codec::LayerValues LayerSource::values(const Layer& layer, const Attribute& attr
     values.absent[i] = !to_numbers(layer, std::span(attribute.values).subspan(source[i] * components, components),
                                    std::span(values.numbers).subspan(i * components, components));
   return values;
+}
+
+Buffer LayerSource::exact(const codec::EncodedChart& encoded, const Places& places) const {
+  std::vector<Point> positions;
+  for (const std::uint32_t v : places.vertices) positions.push_back(record_.rounded(exact_[v]));
+  return codec::encode_exact(positions, encoded.decoded.positions, record_.lattice, *record_.exact);
 }
 
 codec::Polygons LayerSource::polygons(const Places& places) const {
@@ -99,8 +109,9 @@ codec::Polygons LayerSource::polygons(const Places& places) const {
 std::vector<LayerSource::Blob> LayerSource::encode(const chartify::NetChart& chart,
                                                    const codec::EncodedChart& encoded) const {
   std::vector<Blob> blobs;
-  if (table_.layers.empty()) return blobs;
+  if (table_.layers.empty() && !record_.exact) return blobs;
   const Places places = places_in_file(chart, encoded);
+  if (record_.exact) blobs.push_back({kExactLayer, exact(encoded, places)});
   const codec::LayerOrder order(encoded.decoded);
   auto attribute = data_.attributes.begin();
   for (const Layer& layer : table_.layers) {

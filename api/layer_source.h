@@ -4,6 +4,7 @@
 
 #include "api/layers.h"
 #include "api/mesh_file/mesh_file.h"
+#include "api/mesh_record.h"
 #include "chartify/wire_net_builder.h"
 #include "codec/chart_codec.h"
 #include "codec/polygon_codec.h"
@@ -13,9 +14,10 @@ namespace ramcdb::detail {
 /// The layers of a mesh that is imported: what its file has, taken apart chart by chart.
 class LayerSource {
  public:
-  /// All must outlive the source. `mesh` is the canonical form of `cut`'s triangles.
+  /// All must outlive the source. `mesh` is the canonical form of `cut`'s triangles. `exact` are the positions of the
+  /// file's vertices where `record` says that they are kept to the last bit; else empty.
   LayerSource(const mesh_file::MeshData& data, const mesh_file::Triangulation& cut, const chartify::CanonicalMesh& mesh,
-              bool lossless);
+              const MeshRecord& record, const std::vector<Point>& exact, bool lossless_attributes);
 
   [[nodiscard]] const LayerTable& table() const { return table_; }
   /// Per canonical face the file's face that it was cut from; empty when all of them are triangles.
@@ -31,12 +33,15 @@ class LayerSource {
  private:
   struct Places;
   [[nodiscard]] Places places_in_file(const chartify::NetChart& chart, const codec::EncodedChart& encoded) const;
+  [[nodiscard]] Buffer exact(const codec::EncodedChart& encoded, const Places& places) const;
   [[nodiscard]] codec::LayerValues values(const Layer& layer, const Attribute& attribute, const Places& places) const;
   [[nodiscard]] codec::Polygons polygons(const Places& places) const;
 
   const mesh_file::MeshData& data_;
   const mesh_file::Triangulation& cut_;
   const chartify::CanonicalMesh& mesh_;
+  const MeshRecord& record_;
+  const std::vector<Point>& exact_;
   std::vector<std::uint8_t> turns_;  ///< canonical corner i of a face is corner (i + turn) % 3 of its triangle
   LayerTable table_;
 };

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "codec/float_order.h"
 #include "ramcdb/error.h"
 
 namespace ramcdb::detail {
@@ -40,20 +40,6 @@ bool is_signed(NumberType type) {
   return type == NumberType::int8 || type == NumberType::int16 || type == NumberType::int32;
 }
 
-template <class Float, class Bits>
-std::uint64_t ordered_bits(double number) {
-  const auto bits = std::bit_cast<Bits>(static_cast<Float>(number));
-  constexpr Bits kSign = Bits{1} << (8 * sizeof(Bits) - 1);
-  return bits & kSign ? static_cast<Bits>(~bits) : static_cast<Bits>(bits | kSign);
-}
-
-template <class Float, class Bits>
-double from_ordered_bits(std::uint64_t number) {
-  const auto bits = static_cast<Bits>(number);
-  constexpr Bits kSign = Bits{1} << (8 * sizeof(Bits) - 1);
-  return static_cast<double>(std::bit_cast<Float>(static_cast<Bits>(bits & kSign ? bits ^ kSign : ~bits)));
-}
-
 /// How finely numbers are kept that programs compute with; 0: all of them.
 double step_for(Meaning meaning) {
   switch (meaning) {
@@ -79,8 +65,7 @@ bool on_grid(double number, double step) {
 std::uint64_t to_number(const Layer& layer, double number) {
   switch (layer.coding) {
     case LayerCoding::float_bits:
-      return layer.info.type == NumberType::float32 ? ordered_bits<float, std::uint32_t>(number)
-                                                    : ordered_bits<double, std::uint64_t>(number);
+      return codec::float_order(number, layer.info.type);
     case LayerCoding::grid: {
       if (!on_grid(number, layer.step)) refuse(layer, number);
       const auto whole = static_cast<std::int64_t>(std::floor(number / layer.step + 0.5));
@@ -102,8 +87,7 @@ double from_number(const Layer& layer, std::uint64_t number) {
   };
   switch (layer.coding) {
     case LayerCoding::float_bits:
-      return layer.info.type == NumberType::float32 ? from_ordered_bits<float, std::uint32_t>(number)
-                                                    : from_ordered_bits<double, std::uint64_t>(number);
+      return codec::from_float_order(number, layer.info.type);
     case LayerCoding::grid:
       return extended(kGridBits) * layer.step;
     default:

@@ -41,6 +41,7 @@ void visit_counters(Record& r, Visit&& visit) {
   visit("wb", r.wire_bytes);
   visit("tb", r.table_bytes);
   visit("lb", r.layer_bytes);
+  visit("xb", r.exact_bytes);
   visit("po", r.polygons);
 }
 
@@ -58,11 +59,27 @@ void visit_ids(Record& r, Visit&& visit) {
 
 }  // namespace
 
+Point MeshRecord::rounded(const Point& p) const {
+  if (exact != NumberType::float32) return p;
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+}
+
+std::pair<Point, Point> MeshRecord::bounds(const LatticeBox& box) const {
+  Point lo = lattice.position(box.lo), hi = lattice.position(box.hi);
+  for (int axis = 0; exact && axis < 3; ++axis) {
+    lo[axis] -= lattice.step / 2;
+    hi[axis] += lattice.step / 2;
+  }
+  return {lo, hi};
+}
+
 Buffer encode_record(const MeshRecord& record) {
   json j;
   j["format"] = kRecordFormat;
   j["o"] = json::array({record.lattice.origin.x, record.lattice.origin.y, record.lattice.origin.z});
   j["s"] = record.lattice.step;
+  j["n"] = record.lattice.steps_per_unit;
+  j["x"] = record.exact ? static_cast<int>(*record.exact) : 0;
   j["p"] = static_cast<int>(record.profile);
   if (!record.range.empty()) {
     j["lo"] = point_json(record.range.lo);
@@ -84,6 +101,11 @@ MeshRecord decode_record(Bytes blob, std::string_view where) {
     MeshRecord record;
     for (int a = 0; a < 3; ++a) record.lattice.origin[a] = j.at("o").at(static_cast<std::size_t>(a)).get<double>();
     record.lattice.step = j.at("s").get<double>();
+    record.lattice.steps_per_unit = j.at("n").get<double>();
+    if (const int exact = j.at("x").get<int>(); exact != 0) record.exact = static_cast<NumberType>(exact);
+    if (record.exact && !is_float(*record.exact)) throw damaged("bad type of positions");
+    if (!(record.lattice.steps_per_unit >= 0) || !std::isfinite(record.lattice.steps_per_unit))
+      throw damaged("bad lattice steps");
     if (!(record.lattice.step > 0) || !std::isfinite(record.lattice.step)) throw damaged("bad lattice step");
     for (int a = 0; a < 3; ++a)
       if (!std::isfinite(record.lattice.origin[a])) throw damaged("bad lattice origin");

@@ -1,14 +1,21 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 #include "codec/chart_codec.h"
+#include "ramcdb/attributes.h"
 #include "ramcdb/bytes.h"
 #include "ramcdb/geometry.h"
 #include "ramcdb/ids.h"
 
 namespace ramcdb::detail {
+
+/// The layer of a chart that says which positions its lattice points stand for, when these are kept to the last bit
+/// (codec/exact_codec.h). Not one of the layer table.
+inline constexpr std::uint16_t kExactLayer = 0;
 
 /// What a version knows of a mesh beside its pages: how it is coded, which ids come next, and running totals, so that
 /// `info` need not decode a chart. Stored as one small blob per version that changed the mesh.
@@ -17,7 +24,10 @@ struct MeshRecord {
   std::uint32_t target_faces = 5000;
   codec::Profile profile = codec::Profile::dense;
   LatticeBox range;  ///< the shared quantization range of all charts: fixed at import
-  TableId table;     ///< coder tables of newly coded charts; 0: the built-in ones
+  /// float32 or float64: positions are kept to the last bit as numbers of this type, in layer kExactLayer of each
+  /// chart.
+  std::optional<NumberType> exact;
+  TableId table;  ///< coder tables of newly coded charts; 0: the built-in ones
 
   ChartId next_chart{1};
   WireId next_wire{1};
@@ -34,8 +44,19 @@ struct MeshRecord {
   std::uint64_t page_bytes = 0;   ///< of all pages, checksums included
   std::uint64_t wire_bytes = 0;   ///< of all wire blobs, checksums included
   std::uint64_t table_bytes = 0;  ///< of all coder tables and the layer table, checksums included
-  std::uint64_t layer_bytes = 0;  ///< of all layer blobs, checksums included
+  std::uint64_t layer_bytes = 0;  ///< of all layer blobs but exact positions, checksums included
+  std::uint64_t exact_bytes = 0;  ///< of all exact positions, checksums included
   std::uint64_t polygons = 0;     ///< faces of the file with more than three corners
+
+  /// The position that the mesh keeps of one that a file or a program gives; the lattice then has its place.
+  [[nodiscard]] Point rounded(const Point& p) const;
+  /// The least box that surely holds all positions of a lattice box, model units: it is exact unless positions are kept
+  /// to the last bit, which may lie half a step outside.
+  [[nodiscard]] std::pair<Point, Point> bounds(const LatticeBox& box) const;
+  /// The counter of a layer's bytes.
+  [[nodiscard]] std::uint64_t& bytes_of_layer(std::uint16_t layer) {
+    return layer == kExactLayer ? exact_bytes : layer_bytes;
+  }
 };
 
 /// As CBOR with short keys.

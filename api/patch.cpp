@@ -62,7 +62,7 @@ Patch::Patch(const Snapshot& snapshot, RegionMesh region)
   mesh_.add_property(chart_, "ramcdb:chart");
   mesh_.add_property(region_vertex_, "ramcdb:region_vertex");
   const auto add_vertex = [&](std::uint32_t v) {
-    const Point p = base_.position(region_.points[v]);
+    const Point p = base_.position(region_, v);
     const auto handle = mesh_.add_vertex({p.x, p.y, p.z});
     mesh_.property(key_, handle) = region_.keys[v].packed();
     mesh_.property(region_vertex_, handle) = v;

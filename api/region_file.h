@@ -15,9 +15,7 @@ struct WrittenRegion {
   std::vector<mesh_file::Dropped> left_out;
 };
 
-/// Writes a region as a mesh file: coordinates as 32-bit floats where these give back every lattice point, else as
-/// doubles. The local origin is zero unless the format holds nothing but floats and those would not do, and
-/// `may_shift`; without it, that is refused.
+/// Writes a region as a mesh file, with coordinates as `coordinates_for` chooses them.
 [[nodiscard]] WrittenRegion write_region(const Snapshot& snapshot, const RegionMesh& region,
                                          const std::filesystem::path& file, const FileOptions& options, bool with_ids,
                                          bool may_shift);
@@ -34,7 +32,7 @@ struct FileEdit {
 /// Attributes are found by their names, or else by what they mean; those that the file lacks stay, and what it has in
 /// addition is no edit. Throws invalid_argument, with places, when its connectivity differs.
 /// \param trust_ids vertex ids in the file refer to this very region.
-[[nodiscard]] FileEdit edit_in_file(const RegionMesh& region, const Lattice& lattice, const mesh_file::MeshData& file,
+[[nodiscard]] FileEdit edit_in_file(const Snapshot::Impl& at, const RegionMesh& region, const mesh_file::MeshData& file,
                                     const Point& local_origin, bool trust_ids);
 
 }  // namespace ramcdb::detail

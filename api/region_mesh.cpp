@@ -29,17 +29,20 @@ class VertexTable {
  public:
   explicit VertexTable(RegionMesh& region) : region_(region) {}
 
-  std::uint32_t vertex(VertexKey key, LatticePoint point) {
-    if (key.where == VertexKey::Where::chart) return add(key, point);
+  /// \param v vertex of the chart
+  std::uint32_t vertex(const LoadedChart& chart, std::size_t v) {
+    const VertexKey key = chart.keys[v];
+    if (key.where == VertexKey::Where::chart) return add(chart, v);
     const auto [it, is_new] = shared_.try_emplace(key.packed(), 0);
-    if (is_new) it->second = add(key, point);
+    if (is_new) it->second = add(chart, v);
     return it->second;
   }
 
  private:
-  std::uint32_t add(VertexKey key, LatticePoint point) {
-    region_.keys.push_back(key);
-    region_.points.push_back(point);
+  std::uint32_t add(const LoadedChart& chart, std::size_t v) {
+    region_.keys.push_back(chart.keys[v]);
+    region_.points.push_back(chart.chart.positions[v]);
+    if (!chart.exact.empty()) region_.exact.push_back(chart.exact[v]);
     return static_cast<std::uint32_t>(region_.points.size() - 1);
   }
 
@@ -151,7 +154,7 @@ RegionMesh load_region(std::span<const RegionPart> parts, unsigned threads, Read
     const auto position = static_cast<std::uint32_t>(region.charts.size());
     region.charts.push_back(c.entry.id);
     std::vector<std::uint32_t> vertex(c.keys.size());
-    for (std::size_t v = 0; v < c.keys.size(); ++v) vertex[v] = table.vertex(c.keys[v], c.chart.positions[v]);
+    for (std::size_t v = 0; v < c.keys.size(); ++v) vertex[v] = table.vertex(c, v);
     for (const Triangle& t : c.chart.faces) {
       region.faces.push_back({vertex[t[0]], vertex[t[1]], vertex[t[2]]});
       region.chart_of_face.push_back(position);

@@ -13,13 +13,14 @@
 namespace ramcdb::detail {
 namespace {
 
-/// A lattice box in model units, closed.
+/// A box in model units, closed.
 struct ModelBox {
   Point lo, hi;
 };
 
-ModelBox model_box(const Lattice& lattice, const LatticeBox& box) {
-  return {lattice.position(box.lo), lattice.position(box.hi)};
+ModelBox model_box(const MeshRecord& record, const LatticeBox& box) {
+  const auto [lo, hi] = record.bounds(box);
+  return {lo, hi};
 }
 
 bool meets(const ModelBox& box, const InBox& shape) {
@@ -64,8 +65,7 @@ using ChartSet = std::set<ChartId>;
 /// Adds the charts whose box `wanted` accepts.
 void add_where(const Snapshot::Impl& at, const std::function<bool(const ModelBox&)>& wanted, ChartSet& found,
                ReadCost* cost) {
-  const Lattice& lattice = at.record().lattice;
-  const auto accepts = [&](const LatticeBox& box) { return !box.empty() && wanted(model_box(lattice, box)); };
+  const auto accepts = [&](const LatticeBox& box) { return !box.empty() && wanted(model_box(at.record(), box)); };
   at.pages().visit(
       accepts,
       [&](const LeafRef& ref) {
@@ -80,8 +80,9 @@ double nearest_vertex(const Snapshot::Impl& at, ChartId chart, const Point& p, R
   ChartLoader loader(at);
   const auto loaded = loader.load(std::span(&chart, 1), 1, cost);
   double best = std::numeric_limits<double>::infinity();
-  for (const LatticePoint v : loaded.front().chart.positions) {
-    const Point q = at.record().lattice.position(v);
+  const LoadedChart& found = loaded.front();
+  for (std::size_t v = 0; v < found.chart.positions.size(); ++v) {
+    const Point q = found.exact.empty() ? at.record().lattice.position(found.chart.positions[v]) : found.exact[v];
     best = std::min(best, squared_distance({q, q}, p));
   }
   return best;
@@ -98,13 +99,12 @@ void add_nearest(const Snapshot::Impl& at, const Point& p, ChartSet& found, Read
       return std::tie(distance, chart) > std::tie(other.distance, other.chart);
     }
   };
-  const Lattice& lattice = at.record().lattice;
   std::priority_queue<Item, std::vector<Item>, std::greater<>> queue;
   queue.push({0, {}, at.root().root_page, at.root().root_version});
   double best = std::numeric_limits<double>::infinity();
   ChartId nearest;
   const auto push = [&](const LatticeBox& box, ChartId chart, PageId page, VersionId version) {
-    if (!box.empty()) queue.push({squared_distance(model_box(lattice, box), p), chart, page, version});
+    if (!box.empty()) queue.push({squared_distance(model_box(at.record(), box), p), chart, page, version});
   };
   while (!queue.empty() && queue.top().distance <= best) {
     const Item item = queue.top();
@@ -205,7 +205,7 @@ std::vector<ChartId> find_charts(const Snapshot::Impl& at, const Region& region,
   ChartSet found;
   for (const RegionShape& shape : region.shapes) add_shape(at, shape, found, cost);
   if (found.empty()) {
-    const ModelBox box = model_box(at.record().lattice, at.pages().box());
+    const ModelBox box = model_box(at.record(), at.pages().box());
     throw Error(Errc::not_found, "the region holds no chart",
                 fmt::format("mesh {} fills the box {:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", at.root().name, box.lo.x,
                             box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z),

@@ -19,24 +19,26 @@ constexpr std::string_view kHowToGoOn =
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-std::vector<LatticePoint> snap_file(const mesh_file::MeshData& data, const Lattice& lattice, const Point& origin) {
-  std::vector<LatticePoint> points;
-  points.reserve(data.positions.size());
-  for (const Point& p : data.positions)
-    points.push_back(lattice.snap({p.x + origin.x, p.y + origin.y, p.z + origin.z}));
-  return points;
-}
-
 /// A file's mesh on the lattice.
 class FileMesh {
  public:
-  FileMesh(const mesh_file::MeshData& data, const Lattice& lattice, const Point& origin)
-      : points(snap_file(data, lattice, origin)), corners(data.corners), firsts_{0} {
+  FileMesh(const mesh_file::MeshData& data, const MeshRecord& record, const Point& origin)
+      : corners(data.corners), firsts_{0} {
+    positions.reserve(data.positions.size());
+    points.reserve(data.positions.size());
+    for (const Point& p : data.positions) {
+      Point q = p;
+      for (int a = 0; a < 3; ++a)
+        if (origin[a] != 0) q[a] += origin[a];  // -0 + 0 would be +0
+      positions.push_back(record.rounded(q));
+      points.push_back(record.lattice.snap(positions.back()));
+    }
     for (std::size_t f = 0; f < data.face_count(); ++f)
       firsts_.push_back(firsts_.back() + (data.face_sizes.empty() ? 3 : data.face_sizes[f]));
   }
 
-  const std::vector<LatticePoint> points;
+  std::vector<Point> positions;  ///< as the mesh would keep them, before its lattice
+  std::vector<LatticePoint> points;
   const std::vector<std::uint32_t>& corners;
 
   [[nodiscard]] Surface surface() const { return {points, corners, firsts_}; }
@@ -75,11 +77,13 @@ class Targets {
   const std::vector<LatticePoint>& points_;
 };
 
-std::vector<VertexMove> moves_of(const RegionMesh& region, const FileMesh& file, const Match& match) {
+std::vector<VertexMove> moves_of(const Snapshot::Impl& at, const RegionMesh& region, const FileMesh& file,
+                                 const Match& match) {
   std::vector<VertexMove> moves;
-  for (std::uint32_t v = 0; v < region.points.size(); ++v)
-    if (match.vertices[v] != kNone && file.points[match.vertices[v]] != region.points[v])
-      moves.push_back({region.keys[v], region.points[v], file.points[match.vertices[v]]});
+  for (std::uint32_t v = 0; v < region.points.size(); ++v) {
+    if (match.vertices[v] == kNone) continue;
+    if (auto move = move_to(at, region, v, file.positions[match.vertices[v]])) moves.push_back(*move);
+  }
   return moves;
 }
 
@@ -218,18 +222,19 @@ Match match_by_geometry(const RegionMesh& region, const RegionFaces& faces, cons
   return match;
 }
 
-Match match_file(const RegionMesh& region, const RegionFaces& faces, const FileMesh& file, const Lattice& lattice,
+Match match_file(const Snapshot::Impl& at, const RegionMesh& region, const RegionFaces& faces, const FileMesh& file,
                  const std::vector<std::uint64_t>& ids) {
+  const Lattice& lattice = at.record().lattice;
   if (!ids.empty())
     if (auto match = match_by_ids(region, faces, file, ids)) return *std::move(match);
   auto ordered = match_by_order(region, faces, file);
   if (!ordered) return match_by_geometry(region, faces, file, lattice);
   // Most vertices in new places: moved, or a numbering that is the old one by chance? The fewer moves tell.
-  const std::size_t moves = moves_of(region, file, *ordered).size();
+  const std::size_t moves = moves_of(at, region, file, *ordered).size();
   if (moves * 2 <= region.points.size()) return *std::move(ordered);
   try {
     Match match = match_by_geometry(region, faces, file, lattice);
-    return moves_of(region, file, match).size() < moves ? match : *std::move(ordered);
+    return moves_of(at, region, file, match).size() < moves ? match : *std::move(ordered);
   } catch (const Error&) {
     return *std::move(ordered);
   }
@@ -237,17 +242,16 @@ Match match_file(const RegionMesh& region, const RegionFaces& faces, const FileM
 
 }  // namespace
 
-FileEdit edit_in_file(const RegionMesh& region, const Lattice& lattice, const mesh_file::MeshData& data,
+FileEdit edit_in_file(const Snapshot::Impl& at, const RegionMesh& region, const mesh_file::MeshData& data,
                       const Point& local_origin, bool trust_ids) {
-  const FileMesh file(data, lattice, local_origin);
+  const FileMesh file(data, at.record(), local_origin);
   const RegionFaces faces(region, !file.has_polygons() && data.face_count() == region.faces.size());
   if (data.face_count() != faces.count())
     throw Error(Errc::invalid_argument,
                 fmt::format("the file has {} faces, the region {}", data.face_count(), faces.count()), {}, kHowToGoOn);
-  const Match match =
-      match_file(region, faces, file, lattice, trust_ids ? data.vertex_ids : std::vector<std::uint64_t>{});
+  const Match match = match_file(at, region, faces, file, trust_ids ? data.vertex_ids : std::vector<std::uint64_t>{});
   FileEdit edit;
-  edit.moves = moves_of(region, file, match);
+  edit.moves = moves_of(at, region, file, match);
   if (!region.attributes.empty() && !data.attributes.empty())
     edit.attributes = attributes_in_file(region, faces, data, {match.vertices, match.corners, match.faces});
   return edit;

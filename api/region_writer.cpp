@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "api/file_coordinates.h"
 #include "api/region_faces.h"
 #include "api/region_file.h"
 #include "api/snapshot_impl.h"
@@ -13,30 +13,6 @@ namespace ramcdb::detail {
 namespace {
 
 using mesh_file::FaceColor;
-
-/// Whether files with float32 coordinates, moved by `origin`, lead back to the same lattice points. In text such a
-/// number is read as a double up to half a float32 step away, so the steps to either side must lead back as well.
-bool floats_hold(const Lattice& lattice, const std::vector<LatticePoint>& points, const Point& origin) {
-  using Float = std::numeric_limits<float>;
-  const auto holds = [&](LatticePoint p) {
-    const Point exact = lattice.position(p);
-    Point nearest, below, above;
-    for (int a = 0; a < 3; ++a) {
-      const double local = exact[a] - origin[a];
-      if (!(std::abs(local) <= double{Float::max()})) return false;
-      const auto number = static_cast<float>(local);
-      nearest[a] = static_cast<double>(number) + origin[a];
-      below[a] = static_cast<double>(std::nextafter(number, -Float::infinity())) + origin[a];
-      above[a] = static_cast<double>(std::nextafter(number, Float::infinity())) + origin[a];
-    }
-    return lattice.snap(nearest) == p && lattice.snap(below) == p && lattice.snap(above) == p;
-  };
-  try {
-    return std::all_of(points.begin(), points.end(), holds);
-  } catch (const Error&) {
-    return false;  // a neighbour lies outside the lattice, as beside its last point, or is infinite
-  }
-}
 
 /// A colour on a wheel, for things that only need to differ from their neighbours.
 FaceColor hue(double turn) {
@@ -82,28 +58,12 @@ std::vector<FaceColor> chart_colors(const Snapshot& snapshot, const RegionMesh& 
 WrittenRegion write_region(const Snapshot& snapshot, const RegionMesh& region, const std::filesystem::path& file,
                            const FileOptions& options, bool with_ids, bool may_shift) {
   const mesh_file::Format format = mesh_file::format_of(file);
-  const Lattice& lattice = snapshot.lattice();
   if (options.paint != Paint::none && format != mesh_file::Format::ply && format != mesh_file::Format::off)
     throw Error(Errc::invalid_argument, "this format has no face colours", file.string(), "write .ply or .off");
 
+  const FileCoordinates coordinates = coordinates_for(snapshot, region, format, options, may_shift);
   mesh_file::MeshOutput out;
-  Point origin;
-  const bool floats = floats_hold(lattice, region.points, origin);
-  out.scalar = floats ? mesh_file::Scalar::float32 : mesh_file::Scalar::float64;
-  if (!floats && format == mesh_file::Format::stl) {
-    if (!may_shift || !floats_hold(lattice, region.points, lattice.origin))
-      throw Error(Errc::invalid_argument, "STL holds 32-bit floats, too coarse for these coordinates", file.string(),
-                  "write .ply, .obj or .off");
-    origin = lattice.origin;
-    out.scalar = mesh_file::Scalar::float32;
-  }
-  std::vector<Point> positions;
-  positions.reserve(region.points.size());
-  for (const LatticePoint p : region.points) {
-    Point q = lattice.position(p);
-    for (int a = 0; a < 3; ++a) q[a] -= origin[a];
-    positions.push_back(q);
-  }
+  out.scalar = coordinates.scalar;
   std::vector<std::uint64_t> ids;
   if (with_ids && format == mesh_file::Format::ply)
     for (const VertexKey& key : region.keys) ids.push_back(key.packed());
@@ -116,14 +76,14 @@ WrittenRegion write_region(const Snapshot& snapshot, const RegionMesh& region, c
   }
   std::vector<Attribute> attributes;
   for (const Attribute& attribute : region.attributes) attributes.push_back(faces.for_file(attribute));
-  out.positions = positions;
+  out.positions = coordinates.positions;
   out.corners = faces.vertices();
   out.face_sizes = faces.sizes();
   out.attributes = attributes;
   out.references = snapshot.impl().layers().references;
   out.vertex_ids = ids;
   out.face_colors = face_colors;
-  return {origin, mesh_file::write_mesh(file, format, out, options.ascii)};
+  return {coordinates.origin, mesh_file::write_mesh(file, format, out, options.ascii)};
 }
 
 }  // namespace ramcdb::detail

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <tuple>
 
 #include "api/region_mesh.h"
 #include "api/region_query.h"
@@ -22,10 +23,10 @@ MeshBytes bytes_of(const Snapshot::Impl& at) {
   bytes.wire_net = record.page_bytes;
   bytes.wires = record.wire_bytes;
   bytes.connectivity = whole(record.chart_cost.connectivity);
-  bytes.geometry = whole(record.chart_cost.geometry);
+  bytes.geometry = whole(record.chart_cost.geometry) + record.exact_bytes;
   const std::uint64_t charts =
       whole(record.chart_cost.header + record.chart_cost.connectivity + record.chart_cost.geometry) +
-      record.charts * detail::kBlobOverhead;
+      record.charts * detail::kBlobOverhead + record.exact_bytes;
   bytes.chart_headers = charts - bytes.connectivity - bytes.geometry;
   bytes.attributes = record.layer_bytes;
   bytes.tables = record.table_bytes + at.record_bytes();
@@ -68,15 +69,15 @@ ChartSummary summary_of(const Snapshot::Impl& at, db::BlobReader& reader, const 
     }
   neighbours.erase(chart.id);
   summary.neighbours.assign(neighbours.begin(), neighbours.end());
-  summary.lo = at.record().lattice.position(chart.box.lo);
-  summary.hi = at.record().lattice.position(chart.box.hi);
+  std::tie(summary.lo, summary.hi) = at.record().bounds(chart.box);
   summary.version = chart.version;
   for (const LayerRef& layer : chart.layers) {
     summary.version = std::max(summary.version, layer.version);
     const db::BlobKey key{db::Kind::attribute, at.root().mesh, chart.id.value, layer.version, layer.layer};
-    summary.attribute_bytes += reader.get(key).size() + detail::kBlobOverhead;
+    (layer.layer == detail::kExactLayer ? summary.bytes : summary.attribute_bytes) +=
+        reader.get(key).size() + detail::kBlobOverhead;
   }
-  summary.bytes =
+  summary.bytes +=
       reader.get({db::Kind::chart, at.root().mesh, chart.id.value, chart.version, 0}).size() + detail::kBlobOverhead;
   return summary;
 }
@@ -106,12 +107,11 @@ MeshInfo Snapshot::info() const {
   info.degenerate_faces = record.degenerate_faces;
   info.duplicate_faces = record.duplicate_faces;
   info.lattice = record.lattice;
-  info.max_error = record.lattice.step / 2;
+  info.lossless = record.exact.has_value();
+  info.max_error = info.lossless ? 0 : record.lattice.step / 2;
   info.profile = "dense";
   info.target_faces = record.target_faces;
-  const LatticeBox box = impl_->pages().box();
-  info.lo = record.lattice.position(box.lo);
-  info.hi = record.lattice.position(box.hi);
+  std::tie(info.lo, info.hi) = record.bounds(impl_->pages().box());
   for (const detail::Layer& layer : impl_->layers().layers)
     if (layer.coding != detail::LayerCoding::polygons) info.attributes.push_back({layer.info, layer.max_error()});
   info.references = impl_->layers().references;

@@ -5,7 +5,7 @@
 namespace ramcdb::chartify {
 namespace {
 
-constexpr int kRounds = 3;
+constexpr int kMoveRounds = 3;
 constexpr int kLeastGain = -1;         // of the first move of a climb
 constexpr std::size_t kPatience = 30;  // moves without a new best
 
@@ -104,7 +104,7 @@ class Climber {
 
 void move_faces(FaceMover& mover) {
   Climber climber(mover);
-  for (int round = 0; round < kRounds; ++round)
+  for (int round = 0; round < kMoveRounds; ++round)
     if (climber.run_round() == 0) return;
 }
 

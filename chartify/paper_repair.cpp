@@ -9,7 +9,7 @@
 namespace ramcdb::chartify {
 namespace {
 
-constexpr int kRounds = 4;  // a cut may make a new abnormal chart
+constexpr int kRepairRounds = 4;  // a cut may make a new abnormal chart
 constexpr std::uint32_t kSmallestSplit = 24;
 
 /// What the border of every chart looks like: which charts it meets, and along how many separate stretches.
@@ -93,7 +93,7 @@ bool merge_islands(const BorderSurvey& survey, Partition& partition) {
 
 void repair_topology(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const Neighbours& neighbours,
                      Partition& partition) {
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kRepairRounds; ++round) {
     if (merge_islands(BorderSurvey(twins, partition), partition)) continue;
     const BorderSurvey survey(twins, partition);
     std::vector<std::uint32_t> parts(partition.sizes.size(), 0);

@@ -8,7 +8,7 @@ namespace ramcdb::chartify {
 namespace {
 
 constexpr int kLloydIterations = 3;
-constexpr int kRounds = 8;  // a part may come out far too large again
+constexpr int kSplitRounds = 8;  // a part may come out far too large again
 
 Neighbours neighbours_within_charts(const Neighbours& neighbours, const std::vector<std::uint32_t>& chart_of_face) {
   Neighbours within = neighbours;
@@ -33,7 +33,7 @@ void split_charts(const IndexedMesh& mesh, const Neighbours& neighbours, const s
 
 void split_oversized(const IndexedMesh& mesh, const Neighbours& neighbours, const SizeLimits& limits,
                      Partition& partition) {
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kSplitRounds; ++round) {
     std::vector<std::uint32_t> parts(partition.sizes.size(), 0);
     for (std::size_t c = 0; c < parts.size(); ++c)
       if (partition.sizes[c] > limits.ceiling) parts[c] = (partition.sizes[c] + limits.target - 1) / limits.target;

@@ -21,21 +21,29 @@ struct CheckoutOptions {
   MeshAt which;
   RegionOptions region;
   OutputFileOptions output;
+  std::optional<bool> local_origin;
   unsigned threads = 1;
   OutputMode mode;
 };
+
+std::string origin_text(const CheckoutReport& report) {
+  if (report.local_origin == Point{}) return {};
+  return "coordinates are relative to " + point_text(report.local_origin) +
+         ", which commit adds again (--no-local-origin writes them whole)\n";
+}
 
 std::string report_text(const CheckoutReport& report, const std::string& file) {
   return file + ": " + counted(report.charts, "chart") + " of " + version_text(report.revision) + ", " +
          counted(report.vertices, "vertex", "vertices") + ", " + counted(report.faces, "face") + "; read " +
          counted(report.blobs_read, "blob") + ", " + counted(report.bytes_read, "byte") + " in " +
-         duration(report.seconds) + "\n" + left_out_text(report.left_out);
+         duration(report.seconds) + "\n" + origin_text(report) + left_out_text(report.left_out);
 }
 
 CheckoutReport checkout(const CheckoutOptions& options, const Region& region) {
   const Repository repository = Repository::open(options.folder);
   const Snapshot snapshot = repository.snapshot(options.which.mesh, options.which.at);
   FileOptions file = file_options_of(options.output);
+  file.local_origin = options.local_origin;
   file.threads = options.threads;
   ProgressBar bar("checkout", options.mode.quiet);
   file.progress = bar.callback();
@@ -65,6 +73,13 @@ void setup_checkout(CLI::App& app, Run& run) {
   add_repository(verb, options->folder);
   add_region(verb, options->region);
   add_output_file(verb, options->output);
+  CLI::Option* local = verb.add_flag_callback(
+      "--local-origin", [options] { options->local_origin = true; },
+      "Write coordinates relative to a point near the region, which commit adds again "
+      "(default: where float32 or six digits would not hold them)");
+  verb.add_flag_callback(
+          "--no-local-origin", [options] { options->local_origin = false; }, "Write coordinates whole")
+      ->excludes(local);
   add_mesh(verb, options->which);
   add_at(verb, options->which);
   add_threads(verb, options->threads);

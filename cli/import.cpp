@@ -57,6 +57,9 @@ std::string changed_text(const ImportReport& report) {
 
 std::string error_text(const ImportReport& report) {
   if (report.info.lossless) return "error    none, positions are kept to the last bit\n";
+  if (report.measured_error == 0)
+    return "error    none, all positions lie on the lattice (step " + model_units(report.info.lattice.step) +
+           "); of edits at most " + model_units(report.info.max_error) + " along each axis, in model units\n";
   return "error    at most " + model_units(report.info.max_error) + " along each axis, in model units; measured " +
          model_units(report.measured_error) + " (lattice step " + model_units(report.info.lattice.step) + ")\n";
 }
@@ -120,6 +123,10 @@ void add_lattice_options(CLI::App& verb, ImportCommand& command) {
   CLI::Option* precision =
       verb.add_option("--precision", command.options.precision, "Instead: largest coordinate error, in model units");
   precision->type_name("X")->check(CLI::Validator(refuse_bad_precision, ""))->excludes(bits);
+  verb.add_flag("--lossless", command.options.lossless,
+                "Instead: positions to the last bit, and attributes as with --lossless-attributes")
+      ->excludes(bits)
+      ->excludes(precision);
   verb.add_option("--lattice-of", command.lattice_of,
                   "Instead: the lattice of this mesh of the repository, so that both fit together exactly")
       ->type_name("MESH")

@@ -197,6 +197,7 @@ std::string checkout_json(const CheckoutReport& report) {
                   {"blobs_read", report.blobs_read},
                   {"seconds", report.seconds},
                   {"pages_read", report.pages_read},
+                  {"local_origin", of(report.local_origin)},
                   {"left_out", of(report.left_out)}});
 }
 

@@ -26,7 +26,7 @@
 namespace ramcdb::codec {
 namespace {
 
-constexpr std::uint8_t kFormat = 1, kLeaf = 1, kInner = 2;
+constexpr std::uint8_t kPageFormat = 1, kLeaf = 1, kInner = 2;
 
 // What a page may hold at most: far over what any writer makes, and small enough that hostile bytes cost little.
 constexpr std::uint32_t kMostCharts = 1 << 13, kMostSteps = 1 << 19, kMostEntries = 1 << 13, kMostRuns = 1 << 18,
@@ -445,7 +445,7 @@ Buffer encode_page(const Page& page) {
   const Buffer stream = encoder.finish();
   Buffer blob;
   blob.reserve(1 + stream.size());
-  blob.push_back(static_cast<std::uint8_t>(kFormat << 4 | kind));
+  blob.push_back(static_cast<std::uint8_t>(kPageFormat << 4 | kind));
   blob.insert(blob.end(), stream.begin(), stream.end());
   return blob;
 }
@@ -453,7 +453,7 @@ Buffer encode_page(const Page& page) {
 Page decode_page(Bytes blob) {
   if (blob.empty()) corrupt("no bytes");
   if (blob[0] >> 4 == 0) corrupt("no known format");
-  if (blob[0] >> 4 != kFormat)
+  if (blob[0] >> 4 != kPageFormat)
     throw Error(Errc::unsupported_version, "page blob: unknown format", {}, "use a newer ramcdb");
   const unsigned kind = blob[0] & 15;
   if (kind != kLeaf && kind != kInner) corrupt("neither leaf nor inner page");

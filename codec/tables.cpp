@@ -16,7 +16,7 @@ namespace {
 ///
 /// Bit i of a mask, lowest first, says that class i differs from the built-in table. check: the lower half of XXH3-64
 /// over all bytes before it. Formats that were ever written: 1.
-constexpr std::uint8_t kFormat = 1;
+constexpr std::uint8_t kTableFormat = 1;
 
 std::uint32_t check_of(Bytes bytes) { return static_cast<std::uint32_t>(XXH3_64bits(bytes.data(), bytes.size())); }
 
@@ -58,7 +58,7 @@ CoderTables::CoderTables() : fan(kBuiltInFanWeights), plane(kBuiltInPlaneWeights
 
 Buffer encode_tables(const CoderTables& tables) {
   const CoderTables built_in;
-  Buffer out{kFormat};
+  Buffer out{kTableFormat};
   put_mask(out, tables.fan, built_in.fan);
   put_mask(out, tables.plane, built_in.plane);
   put_weights(out, tables.fan, built_in.fan);
@@ -69,8 +69,8 @@ Buffer encode_tables(const CoderTables& tables) {
 
 CoderTables decode_tables(Bytes blob) {
   ByteReader reader(blob, "table blob");
-  if (const std::uint8_t format = reader.byte(); format != kFormat) {
-    if (format > kFormat) throw Error(Errc::unsupported_version, "a table blob of a newer format");
+  if (const std::uint8_t format = reader.byte(); format != kTableFormat) {
+    if (format > kTableFormat) throw Error(Errc::unsupported_version, "a table blob of a newer format");
     reader.fail("is of no known format");
   }
   CoderTables tables;

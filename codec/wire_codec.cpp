@@ -24,7 +24,7 @@ namespace {
 
 enum class Predictor : std::uint8_t { blended = 0, linear = 1 };
 
-constexpr std::uint8_t kFormat = 1;
+constexpr std::uint8_t kWireFormat = 1;
 
 /// More than any wire has, and little enough that hostile counts cost little.
 constexpr std::size_t kMostPoints = 1 << 20;
@@ -147,7 +147,7 @@ Buffer encode_with(Predictor predictor, const Wire& wire) {
   const Buffer stream = encoder.finish();
   Buffer blob;
   blob.reserve(1 + stream.size());
-  blob.push_back(static_cast<std::uint8_t>(kFormat << 4 | static_cast<std::uint8_t>(predictor)));
+  blob.push_back(static_cast<std::uint8_t>(kWireFormat << 4 | static_cast<std::uint8_t>(predictor)));
   blob.insert(blob.end(), stream.begin(), stream.end());
   return blob;
 }
@@ -177,7 +177,7 @@ Wire decode_wire(Bytes blob, LatticePoint begin, LatticePoint end, std::uint32_t
   }
   if (blob.empty() || inner_points > kMostPoints) throw Error(Errc::corrupt, "wire blob: no bytes, or too many points");
   if (blob[0] >> 4 == 0) throw Error(Errc::corrupt, "wire blob: no known format");
-  if (blob[0] >> 4 != kFormat)
+  if (blob[0] >> 4 != kWireFormat)
     throw Error(Errc::unsupported_version, "wire blob: unknown format", {}, "use a newer ramcdb");
   if ((blob[0] & 15) > 1) throw Error(Errc::corrupt, "wire blob: unknown predictor");
   RangeDecoder decoder(blob.subspan(1));

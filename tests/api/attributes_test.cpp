@@ -115,12 +115,6 @@ auto records(const Snapshot& snapshot, const MeshData& mesh) {
   return face_records(mesh, snapshot.lattice(), snapshot.info().attributes);
 }
 
-CommitOptions message(const char* text) {
-  CommitOptions options;
-  options.message = text;
-  return options;
-}
-
 TEST(Attributes, ComeBackWithTheirPolygonsFromEveryVersion) {
   const MeshData mesh = painted_grid(60);
   for (const bool lossless : {false, true}) {

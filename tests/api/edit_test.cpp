@@ -9,13 +9,6 @@
 namespace ramcdb::test {
 namespace {
 
-CommitOptions message(const char* text) {
-  CommitOptions options;
-  options.message = text;
-  options.author = "test";
-  return options;
-}
-
 Region charts(std::initializer_list<std::uint32_t> ids) {
   OfCharts shape;
   for (const std::uint32_t id : ids) shape.charts.emplace_back(id);

@@ -46,12 +46,6 @@ FileMesh soup(const FileMesh& mesh) {
   return out;
 }
 
-CommitOptions message(const char* text) {
-  CommitOptions options;
-  options.message = text;
-  return options;
-}
-
 class ForeignTool : public ::testing::Test {
  protected:
   void check_out(const char* name, std::initializer_list<std::uint32_t> ids) {

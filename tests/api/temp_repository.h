@@ -16,6 +16,13 @@
 
 namespace ramcdb::test {
 
+[[nodiscard]] inline CommitOptions message(const char* text) {
+  CommitOptions options;
+  options.message = text;
+  options.author = "test";
+  return options;
+}
+
 /// A folder that is gone when the test is over.
 class TempFolder {
  public:

@@ -18,12 +18,12 @@ std::size_t count_isolated(const IndexedMesh& mesh) {
   return mesh.positions.size() - used.size();
 }
 
+}  // namespace
+
 std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t f) {
   while (parent[f] != f) f = parent[f] = parent[parent[f]];
   return f;
 }
-
-}  // namespace
 
 IndexedMesh canonical(const ramcdb::test::TestMesh& mesh) {
   return canonical_order({ramcdb::test::snap_to_bits(mesh, 16), mesh.faces}).mesh;

@@ -10,6 +10,9 @@
 /// What must hold for the charts of every mesh, and what tests of several subjects need.
 namespace ramcdb::chartify::test {
 
+/// The representative of a union of numbers; shortens the way there.
+[[nodiscard]] std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i);
+
 /// A test mesh on a lattice of 16 bits, in canonical order.
 [[nodiscard]] IndexedMesh canonical(const ramcdb::test::TestMesh& mesh);
 

@@ -14,11 +14,6 @@
 namespace ramcdb::chartify::test {
 namespace {
 
-std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 /// What a chart is as a surface, counted from its faces one by one.
 struct Shape {
   std::size_t pieces = 0;   ///< over edges

@@ -17,7 +17,7 @@ namespace {
 using testing::NamedChart;
 using testing::refuses;
 
-const CoderTables kTables;
+const CoderTables kBuiltIn;
 
 void expect_valid(const std::vector<LatticePoint>& positions, const std::vector<Triangle>& faces) {
   for (const Triangle& face : faces)
@@ -34,13 +34,13 @@ struct Blob {
     return std::span(encoded.decoded.positions).first(encoded.decoded.border_count());
   }
   void decode(Bytes bytes) const {
-    const DecodedChart decoded = decode_chart(bytes, border(), encoded.decoded.loop_sizes, kTables, range);
+    const DecodedChart decoded = decode_chart(bytes, border(), encoded.decoded.loop_sizes, kBuiltIn, range);
     expect_valid(decoded.chart.positions, decoded.chart.faces);
   }
 };
 
 Blob blob_of(const Chart& chart, const LatticeBox& range) {
-  return {encode_chart(chart, Profile::dense, kTables, range), range};
+  return {encode_chart(chart, Profile::dense, kBuiltIn, range), range};
 }
 
 std::vector<Chart> small_charts() {
@@ -85,7 +85,7 @@ DenseContext context_of(const Chart& chart) {
   context.expected = context.counts;
   context.edge_exponent = mean_edge_exponent(chart);
   context.box = testing::box_of(chart);
-  context.tables = &kTables;
+  context.tables = &kBuiltIn;
   return context;
 }
 
@@ -142,7 +142,7 @@ TEST(HostileChart, DeclaredCountsCostNothingBeforeTheyAreThere) {
         blob.resize(blob.size() + length, static_cast<std::uint8_t>(filling));
         EXPECT_TRUE(refuses(
             [&](Bytes bytes) {
-              (void)decode_chart(bytes, std::span(border.positions).first(50), border.loop_sizes, kTables,
+              (void)decode_chart(bytes, std::span(border.positions).first(50), border.loop_sizes, kBuiltIn,
                                  testing::box_of(border));
             },
             blob))
@@ -155,7 +155,7 @@ TEST(HostileChart, LongSentencesOfTheSameByteEndInTime) {
   DenseContext context;
   context.counts = {1 << 16, 1 << 17};
   context.box = {{0, 0, 0}, {kMaxLatticeCoordinate, kMaxLatticeCoordinate, kMaxLatticeCoordinate}};
-  context.tables = &kTables;
+  context.tables = &kBuiltIn;
   for (const int filling : {0, 255, 1, 170}) {
     const Buffer bytes(100000, static_cast<std::uint8_t>(filling));
     EXPECT_TRUE(refuses([&](Bytes stream) { (void)decode_dense(stream, context); }, bytes)) << filling;
@@ -166,28 +166,28 @@ TEST(HostileChart, AnotherBorderTableOrRangeIsNoticed) {
   const testing::TestMesh land = testing::terrain(7, 30, 1);
   const Chart chart = testing::cut(land);
   const LatticeBox range = testing::box_of(chart);
-  const EncodedChart encoded = encode_chart(chart, Profile::dense, kTables, range);
+  const EncodedChart encoded = encode_chart(chart, Profile::dense, kBuiltIn, range);
   std::vector<LatticePoint> border(chart.positions.begin(), chart.positions.begin() + chart.border_count());
   const auto decodes = [&](std::span<const std::uint32_t> loops, const CoderTables& tables, const LatticeBox& box) {
     return !refuses([&](Bytes bytes) { (void)decode_chart(bytes, border, loops, tables, box); }, encoded.blob);
   };
-  EXPECT_TRUE(decodes(chart.loop_sizes, kTables, range));
+  EXPECT_TRUE(decodes(chart.loop_sizes, kBuiltIn, range));
 
   LatticeBox wider = range;
   wider.hi.z += 1;
-  EXPECT_FALSE(decodes(chart.loop_sizes, kTables, wider));
-  EXPECT_FALSE(decodes(chart.loop_sizes, kTables, {{0, 0, 0}, {2000000000, 0, 0}}));
+  EXPECT_FALSE(decodes(chart.loop_sizes, kBuiltIn, wider));
+  EXPECT_FALSE(decodes(chart.loop_sizes, kBuiltIn, {{0, 0, 0}, {2000000000, 0, 0}}));
   CoderTables other;
   other.plane[15][2] = static_cast<std::int16_t>(other.plane[15][2] + 1);
   EXPECT_FALSE(decodes(chart.loop_sizes, other, range));
-  EXPECT_FALSE(decodes(std::vector<std::uint32_t>{3, chart.loop_sizes[0] - 3}, kTables, range));
-  EXPECT_FALSE(decodes(std::vector<std::uint32_t>{2, chart.loop_sizes[0] - 2}, kTables, range));
-  EXPECT_FALSE(decodes(std::vector<std::uint32_t>{0xffffffff, 0xffffffff}, kTables, range));
-  EXPECT_FALSE(decodes({}, kTables, range));
+  EXPECT_FALSE(decodes(std::vector<std::uint32_t>{3, chart.loop_sizes[0] - 3}, kBuiltIn, range));
+  EXPECT_FALSE(decodes(std::vector<std::uint32_t>{2, chart.loop_sizes[0] - 2}, kBuiltIn, range));
+  EXPECT_FALSE(decodes(std::vector<std::uint32_t>{0xffffffff, 0xffffffff}, kBuiltIn, range));
+  EXPECT_FALSE(decodes({}, kBuiltIn, range));
   for (std::size_t v = 0; v < border.size(); ++v)
     for (const std::int32_t x : {border[v].x + 1, std::numeric_limits<std::int32_t>::min()}) {
       const std::int32_t before = std::exchange(border[v].x, x);
-      EXPECT_FALSE(decodes(chart.loop_sizes, kTables, range)) << "border vertex " << v;
+      EXPECT_FALSE(decodes(chart.loop_sizes, kBuiltIn, range)) << "border vertex " << v;
       border[v].x = before;
     }
 }

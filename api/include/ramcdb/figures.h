@@ -107,6 +107,7 @@ struct CheckoutReport {
   std::uint64_t charts = 0, faces = 0, vertices = 0;
   std::uint64_t bytes_read = 0, blobs_read = 0, pages_read = 0;
   std::vector<ImportReport::Dropped> left_out;  ///< what the file's format cannot hold
+  Point local_origin;                           ///< what the file's coordinates are relative to, model units
   double seconds = 0;
 };
 

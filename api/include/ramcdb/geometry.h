@@ -63,13 +63,19 @@ using Triangle = std::array<std::uint32_t, 3>;
 
 /// The integer grid of one mesh: p = origin + i * step, evaluated in double precision. Positions are snapped to it
 /// once, on entry; everything inside the repository is integers.
+///
+/// Decimal fractions are no doubles: 7 * 0.001 is not the double that "0.007" reads as. A lattice of them has a whole
+/// number of steps per unit instead, p = (origin * steps_per_unit + i) / steps_per_unit with a whole first product:
+/// then each p is the double that is nearest to the decimal number.
 struct Lattice {
   Point origin;
   double step = 1;
+  double steps_per_unit = 0;  ///< not 0: step is 1 / steps_per_unit, and origin a multiple of it
 
   /// Nearest lattice point (halves round up). Throws limit_exceeded outside +-kMaxLatticeCoordinate and
   /// invalid_argument for coordinates that are not finite.
   [[nodiscard]] LatticePoint snap(const Point& p) const;
+  [[nodiscard]] std::int32_t snap(double coordinate, int axis) const;
 
   /// The model position of a lattice point.
   [[nodiscard]] Point position(LatticePoint i) const;

@@ -21,10 +21,16 @@ class EditTransaction;
 using Progress = std::function<void(std::string_view stage, double done)>;
 
 struct ImportOptions {
-  std::string name;      ///< of the mesh; the file's stem when empty
-  unsigned bits = 16;    ///< step = largest extent / (2^bits - 1); 1..30
-  double precision = 0;  ///< not 0: largest coordinate error in model units instead of `bits` (step = 2 * this)
-  std::optional<Lattice> lattice;  ///< instead of both: this very lattice
+  std::string name;    ///< of the mesh; the file's stem when empty
+  unsigned bits = 16;  ///< step = largest extent / (2^bits - 1); 1..30
+  /// Not 0: the largest coordinate error in model units, instead of `bits`. The step is twice this, or the next smaller
+  /// round number (1, 2, 5 x 10^k or 2^k) if the file's numbers are all multiples of that, so that none is changed, or
+  /// if it is less than a tenth smaller.
+  double precision = 0;
+  /// Instead of both: positions are kept to the last bit, as float32 when all coordinates are such numbers, else as
+  /// float64; and attributes as with `lossless_attributes`.
+  bool lossless = false;
+  std::optional<Lattice> lattice;  ///< this very lattice
   /// Join vertices at equal positions? When not said, soups of triangles (STL) are welded, other meshes are not.
   std::optional<bool> weld;
   bool dry_run = false;              ///< do everything but write: the report says what would be
@@ -44,6 +50,9 @@ struct FileOptions {
   Paint paint = Paint::none;  ///< colour the faces (PLY, OFF); such a file is to look at and cannot be committed
   bool ascii = false;         ///< PLY as text
   bool overwrite = true;
+  /// Checkout: write coordinates relative to a point near the region, which the sidecar keeps and commit adds again?
+  /// When not said: where float32 (or in text formats six digits) cannot hold the coordinates, but can so.
+  std::optional<bool> local_origin;
   unsigned threads = 1;
   Progress progress;
 };

@@ -28,6 +28,7 @@ struct VertexKey {
 struct RegionMesh {
   std::vector<ChartId> charts;               ///< ascending
   std::vector<LatticePoint> points;          ///< per vertex
+  std::vector<Point> exact;                  ///< per vertex, model units; empty unless the mesh is lossless
   std::vector<VertexKey> keys;               ///< per vertex, no two equal
   std::vector<bool> outer_border;            ///< per vertex: also belongs to a chart outside the region
   std::vector<Triangle> faces;               ///< chart by chart, in decode order
@@ -74,6 +75,10 @@ class Snapshot {
                                                 ReadCost* cost = nullptr) const;
 
   [[nodiscard]] Point position(LatticePoint p) const { return lattice().position(p); }
+  /// Where a vertex of a region is, model units: of a lossless mesh to the last bit.
+  [[nodiscard]] Point position(const RegionMesh& region, std::size_t vertex) const {
+    return region.exact.empty() ? position(region.points[vertex]) : region.exact[vertex];
+  }
 
   [[nodiscard]] const Impl& impl() const { return *impl_; }
 

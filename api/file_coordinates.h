@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "api/mesh_file/mesh_file.h"
+#include "ramcdb/repository.h"
+
+namespace ramcdb::detail {
+
+/// How the positions of a region are written into a file, so that reading it gives back every one of them: the lattice
+/// point, or of a lossless mesh the last bit.
+struct FileCoordinates {
+  mesh_file::Scalar scalar = mesh_file::Scalar::float32;
+  Point origin;                  ///< that they are relative to; model units
+  std::vector<Point> positions;  ///< per vertex of the region, as written
+};
+
+/// float32 where it will do, else float32 relative to a point near the region when `may_shift`, else float64; and as
+/// FileOptions::local_origin says. Throws invalid_argument when the format has float32 only and that will not do, and
+/// when an origin is asked for that could not be undone.
+[[nodiscard]] FileCoordinates coordinates_for(const Snapshot& snapshot, const RegionMesh& region,
+                                              mesh_file::Format format, const FileOptions& options, bool may_shift);
+
+}  // namespace ramcdb::detail
