@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "api/snapshot_impl.h"
 #include "ramcdb/error.h"
 
 namespace ramcdb::detail {
@@ -120,7 +121,9 @@ FileCoordinates coordinates_for(const Snapshot& snapshot, const RegionMesh& regi
   Positions positions(snapshot, region);
   FileCoordinates coordinates;
   coordinates.origin = origin_for(positions, format, options, may_shift).value_or(Point{});
-  if (!positions.held_by_floats(coordinates.origin)) coordinates.scalar = Scalar::float64;
+  const bool as_doubles = !may_shift && snapshot.impl().record().written_as == NumberType::float64;
+  if ((as_doubles && format != Format::stl) || !positions.held_by_floats(coordinates.origin))
+    coordinates.scalar = Scalar::float64;
   if (coordinates.scalar == Scalar::float64 && format == Format::stl)
     throw Error(Errc::invalid_argument, "STL holds 32-bit floats, too coarse for these coordinates", {},
                 "write .ply, .obj or .off");

@@ -190,6 +190,7 @@ ImportReport import_mesh(db::Store& store, const std::filesystem::path& file, co
   }
   std::vector<LatticePoint> points = snap_to(record.lattice, type, data, report.measured_error);
   if (options.lossless) report.measured_error = 0;
+  if (report.measured_error == 0) record.written_as = type;
   const mesh_file::Triangulation cut = mesh_file::triangulate(data);
   record.polygons = report.polygons = cut.polygons;
   report.polygons_as_fans = cut.fans;

@@ -79,6 +79,7 @@ Buffer encode_record(const MeshRecord& record) {
   j["o"] = json::array({record.lattice.origin.x, record.lattice.origin.y, record.lattice.origin.z});
   j["s"] = record.lattice.step;
   j["n"] = record.lattice.steps_per_unit;
+  j["t"] = static_cast<int>(record.written_as);
   j["x"] = record.exact ? static_cast<int>(*record.exact) : 0;
   j["p"] = static_cast<int>(record.profile);
   if (!record.range.empty()) {
@@ -102,6 +103,8 @@ MeshRecord decode_record(Bytes blob, std::string_view where) {
     for (int a = 0; a < 3; ++a) record.lattice.origin[a] = j.at("o").at(static_cast<std::size_t>(a)).get<double>();
     record.lattice.step = j.at("s").get<double>();
     record.lattice.steps_per_unit = j.at("n").get<double>();
+    record.written_as = static_cast<NumberType>(j.at("t").get<int>());
+    if (!is_float(record.written_as)) throw damaged("bad type of coordinates");
     if (const int exact = j.at("x").get<int>(); exact != 0) record.exact = static_cast<NumberType>(exact);
     if (record.exact && !is_float(*record.exact)) throw damaged("bad type of positions");
     if (!(record.lattice.steps_per_unit >= 0) || !std::isfinite(record.lattice.steps_per_unit))

@@ -27,6 +27,9 @@ struct MeshRecord {
   /// float32 or float64: positions are kept to the last bit as numbers of this type, in layer kExactLayer of each
   /// chart.
   std::optional<NumberType> exact;
+  /// The numbers that a whole mesh is written with again: float64 where that brings back the numbers of its file, and
+  /// float32 would not.
+  NumberType written_as = NumberType::float32;
   TableId table;  ///< coder tables of newly coded charts; 0: the built-in ones
 
   ChartId next_chart{1};

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "chartify/growth.h"
+#include "tests/chartify/chart_checks.h"
 #include "tests/chartify/lattice_mesh.h"
 #include "tests/chartify/mesh_families.h"
 

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "codec/chart_codec.h"
+#include "codec/exact_codec.h"
 #include "codec/layer_codec.h"
 #include "codec/page_codec.h"
 #include "codec/polygon_codec.h"
@@ -97,6 +98,15 @@ TEST(FormatExample, Layer) {
   const Buffer blob = encode_layer(values, shape, tent(), order);
   EXPECT_TRUE(is_in_the_document(blob));
   EXPECT_EQ(decode_layer(blob, shape, tent(), order), values);
+}
+
+TEST(FormatExample, Exact) {
+  const Lattice lattice{{-4, 0, 512.125}, 0.001, 1000};
+  const std::vector<Point> positions{{0.5, -0.25, 512}, {1.0 / 3, 0.1, 600}, {-0.0, 2, 513.25}};
+  const std::vector<LatticePoint> points{{4500, -250, -125}, {4333, 100, 87875}, {4000, 2000, 1125}};
+  const Buffer blob = encode_exact(positions, points, lattice, NumberType::float64);
+  EXPECT_TRUE(is_in_the_document(blob));
+  EXPECT_EQ(decode_exact(blob, points, lattice, NumberType::float64), positions);
 }
 
 TEST(FormatExample, Polygons) {

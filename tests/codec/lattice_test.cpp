@@ -38,6 +38,26 @@ TEST(Lattice, SnappingTwiceIsSnappingOnce) {
   }
 }
 
+TEST(Lattice, StepsPerUnitGiveTheDoublesThatDecimalsReadAs) {
+  std::mt19937_64 random(5);
+  for (const double per_unit : {10.0, 50.0, 200.0, 1000.0, 1e6}) {
+    const Lattice lattice{{-12.5, 449'320, 0}, 1 / per_unit, per_unit};
+    for (int run = 0; run < 20000; ++run) {
+      const auto i = static_cast<std::int32_t>(random() % (1U << 28));
+      const Point p = lattice.position({i, i, -i});
+      const auto expect_reads_as = [&](double number, double steps) {
+        char text[64];
+        (void)std::snprintf(text, sizeof text, "%.6f", number);
+        EXPECT_EQ(number, std::strtod(text, nullptr)) << text;
+        EXPECT_NEAR(number, steps / per_unit, 1e-9);
+      };
+      expect_reads_as(p.x, i - 12.5 * per_unit);
+      expect_reads_as(p.y, i + 449'320 * per_unit);
+      EXPECT_EQ(lattice.snap(p), (LatticePoint{i, i, -i}));
+    }
+  }
+}
+
 TEST(Lattice, HalvesRoundUpAndNothingElseDoes) {
   const Lattice unit{{0, 0, 0}, 1};
   EXPECT_EQ(unit.snap({0.5, -0.5, 1.5}), (LatticePoint{1, 0, 2}));
