@@ -113,10 +113,11 @@ class Matcher {
     to_opposite_ = opposites_of(to_, to_map_);
     match_unique_shapes();
     walk();
-    match_unique_edges();
+    match_edges();
     walk();
-    match_equal_shapes();
+    match_equal_shapes(from_);
     walk();
+    match_moved_shapes();
     Matching result;
     for (std::uint32_t f = 0; f < matches_.size(); ++f)
       if (matches_[f].face == kNone && result.unmatched++ == 0) result.first_unmatched = f;
@@ -149,22 +150,24 @@ class Matcher {
 
   void match_shapes(Shape a, Shape b) {
     const std::uint32_t size = from_.size(a.face);
+    if (to_.size(b.face) != size) return;
     match(a.face, b.face, (b.turn + size - a.turn) % size);
   }
 
   /// Calls `group` with each run of equal shapes, [begin, end) in either list, where both have some.
+  /// \param from as `from_`, with the same points or others
   template <class Visit>
-  void for_equal(Visit&& group) const {
+  void for_equal(const Surface& from, Visit&& group) const {
     const std::vector<Shape>&a = from_shapes_, &b = to_shapes_;
     for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
-      const int order = compare(from_, a[i], to_, b[j]);
+      const int order = compare(from, a[i], to_, b[j]);
       if (order < 0) {
         ++i;
       } else if (order > 0) {
         ++j;
       } else {
         std::size_t i_end = i, j_end = j;
-        while (i_end < a.size() && compare(from_, a[i_end], from_, a[i]) == 0) ++i_end;
+        while (i_end < a.size() && compare(from, a[i_end], from, a[i]) == 0) ++i_end;
         while (j_end < b.size() && compare(to_, b[j_end], to_, b[j]) == 0) ++j_end;
         group(i, i_end, j, j_end);
         i = i_end;
@@ -176,7 +179,7 @@ class Matcher {
   void match_unique_shapes() {
     from_shapes_ = sorted_shapes(from_);
     to_shapes_ = sorted_shapes(to_);
-    for_equal([&](std::size_t i, std::size_t i_end, std::size_t j, std::size_t j_end) {
+    for_equal(from_, [&](std::size_t i, std::size_t i_end, std::size_t j, std::size_t j_end) {
       if (i_end - i == 1 && j_end - j == 1 && begins_once(from_shapes_[i]))
         match_shapes(from_shapes_[i], to_shapes_[j]);
     });
@@ -190,8 +193,8 @@ class Matcher {
   }
 
   /// What is left of several faces in one place: they are alike, any pairing gives the same surface.
-  void match_equal_shapes() {
-    for_equal([&](std::size_t i, std::size_t i_end, std::size_t j, std::size_t j_end) {
+  void match_equal_shapes(const Surface& from) {
+    for_equal(from, [&](std::size_t i, std::size_t i_end, std::size_t j, std::size_t j_end) {
       while (i < i_end && j < j_end) {
         if (matches_[from_shapes_[i].face].face != kNone) {
           ++i;
@@ -204,37 +207,64 @@ class Matcher {
     });
   }
 
+  /// Faces without an edge that stayed, as degenerate ones at a vertex that moved: they are where the faces around say
+  /// that their vertices went.
+  void match_moved_shapes() {
+    if (std::ranges::none_of(matches_, [](const FaceMatch& m) { return m.face == kNone; })) return;
+    std::vector<LatticePoint> points(from_.points.begin(), from_.points.end());
+    for (std::uint32_t f = 0; f < matches_.size(); ++f)
+      for (std::uint32_t i = 0; matches_[f].face != kNone && i < from_.size(f); ++i)
+        points[from_.corners[from_.corner(f, i)]] = to_.point(matches_[f].face, i + matches_[f].turn);
+    const Surface moved{points, from_.corners, from_.firsts};
+    from_shapes_ = sorted_shapes(moved);
+    match_equal_shapes(moved);
+  }
+
+  /// A face, begun at the corner of an edge that lies at a, b.
   struct PlacedEdge {
     LatticePoint a, b;
-    std::uint32_t corner;
+    Shape face;
+  };
+  /// Faces that lie at the same edge and are alike, [begin, end) of a list.
+  struct AlikeEdges {
+    std::size_t begin, end;
   };
 
   template <class IsFree>
   static std::vector<PlacedEdge> free_edges(const Surface& s, IsFree&& is_free) {
     std::vector<PlacedEdge> edges;
-    for (std::uint32_t f = 0; f < s.face_count(); ++f) {
-      if (!is_free(f)) continue;
-      for (std::uint32_t i = 0; i < s.size(f); ++i) edges.push_back({s.point(f, i), s.point(f, i + 1), s.corner(f, i)});
-    }
+    for (std::uint32_t f = 0; f < s.face_count(); ++f)
+      for (std::uint32_t i = 0; is_free(f) && i < s.size(f); ++i)
+        edges.push_back({s.point(f, i), s.point(f, i + 1), {f, i}});
     std::sort(edges.begin(), edges.end(), [](const PlacedEdge& x, const PlacedEdge& y) {
-      return std::tie(x.a, x.b, x.corner) < std::tie(y.a, y.b, y.corner);
+      return std::tie(x.a, x.b, x.face.face, x.face.turn) < std::tie(y.a, y.b, y.face.face, y.face.turn);
     });
-    // An edge that stands several times says nothing.
-    std::vector<PlacedEdge> unique;
+    return edges;
+  }
+
+  /// An edge where several different faces lie says nothing.
+  static std::vector<AlikeEdges> alike_edges(const Surface& s, const std::vector<PlacedEdge>& edges) {
+    std::vector<AlikeEdges> alike;
     for (std::size_t i = 0, end; i < edges.size(); i = end) {
-      for (end = i; end < edges.size() && edges[end].a == edges[i].a && edges[end].b == edges[i].b;) ++end;
-      if (end - i == 1 && edges[i].a != edges[i].b) unique.push_back(edges[i]);
+      bool all_alike = edges[i].a != edges[i].b;
+      for (end = i; end < edges.size() && edges[end].a == edges[i].a && edges[end].b == edges[i].b; ++end)
+        all_alike = all_alike && compare(s, edges[i].face, s, edges[end].face) == 0;
+      if (all_alike) alike.push_back({i, end});
     }
-    return unique;
+    return alike;
   }
 
   /// For faces of which only one edge stayed in place.
-  void match_unique_edges() {
-    const auto a = free_edges(from_, [&](std::uint32_t f) { return matches_[f].face == kNone; });
-    const auto b = free_edges(to_, [&](std::uint32_t f) { return !taken_[f]; });
+  void match_edges() {
+    const auto mine = free_edges(from_, [&](std::uint32_t f) { return matches_[f].face == kNone; });
+    const auto theirs = free_edges(to_, [&](std::uint32_t f) { return !taken_[f]; });
+    const auto a = alike_edges(from_, mine), b = alike_edges(to_, theirs);
     for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
-      const auto order = std::tie(a[i].a, a[i].b) <=> std::tie(b[j].a, b[j].b);
-      if (order == 0) match_corners(a[i].corner, b[j].corner);
+      const PlacedEdge &x = mine[a[i].begin], &y = theirs[b[j].begin];
+      const auto order = std::tie(x.a, x.b) <=> std::tie(y.a, y.b);
+      if (order == 0 && a[i].end - a[i].begin == b[j].end - b[j].begin)
+        for (std::size_t k = 0; k < a[i].end - a[i].begin; ++k)
+          match_shapes(mine[a[i].begin + k].face, theirs[b[j].begin + k].face);
       i += order <= 0;
       j += order >= 0;
     }

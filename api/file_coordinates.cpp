@@ -70,7 +70,8 @@ class Positions {
 
   [[nodiscard]] std::vector<Point> relative_to(const Point& origin) && {
     for (Point& p : positions_)
-      for (int a = 0; a < 3 && origin[a] != 0; ++a) p[a] -= origin[a];
+      for (int a = 0; a < 3; ++a)
+        if (origin[a] != 0) p[a] -= origin[a];  // -0 - 0 would stay -0, but not as a sum again
     return std::move(positions_);
   }
 

@@ -49,20 +49,25 @@ mesh_file::MeshData read_file(const std::filesystem::path& file, const ImportOpt
   return data;
 }
 
-/// Snaps every position, and measures how far the farthest moved along an axis: of numbers that are all float32, to
-/// the float32 that the lattice point is written as. The file's positions become lattice points too, so that polygons
-/// are cut by these: the same however often a mesh goes out and in.
+/// Snaps every position, and measures how far the farthest moved along an axis: none, where all come back as the
+/// numbers of `type` that they were. The file's positions become lattice points too, so that polygons are cut by these:
+/// the same however often a mesh goes out and in.
 std::vector<LatticePoint> snap_to(const Lattice& lattice, NumberType type, mesh_file::MeshData& data,
                                   double& measured_error) {
   std::vector<LatticePoint> points;
   points.reserve(data.positions.size());
+  bool all_come_back = true;
   for (Point& p : data.positions) {
     const LatticePoint snapped = lattice.snap(p);
     const Point q = lattice.position(snapped);
-    for (int a = 0; a < 3; ++a) measured_error = std::max(measured_error, std::abs(as_type(q[a], type) - p[a]));
+    for (int a = 0; a < 3; ++a) {
+      measured_error = std::max(measured_error, std::abs(q[a] - p[a]));
+      all_come_back &= as_type(q[a], type) == p[a];
+    }
     p = {static_cast<double>(snapped.x), static_cast<double>(snapped.y), static_cast<double>(snapped.z)};
     points.push_back(snapped);
   }
+  if (all_come_back) measured_error = 0;
   return points;
 }
 

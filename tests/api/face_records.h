@@ -14,8 +14,10 @@ namespace ramcdb::test {
 /// Everything that a file says of each face: positions on the lattice, attributes of vertices and corners, all of that
 /// turned to the smallest sequence; then attributes of the face. Sorted: equal for files that say the same, however
 /// numbered. Attributes that are kept with an error are compared on their grid, materials and groups by their names.
-inline std::vector<std::vector<double>> face_records(const mesh_file::MeshData& mesh, const Lattice& lattice,
-                                                     const std::vector<MeshInfo::Layer>& layers) {
+/// \param place what three numbers stand for a position
+template <class Place>
+std::vector<std::vector<double>> face_records(const mesh_file::MeshData& mesh, Place&& place,
+                                              const std::vector<MeshInfo::Layer>& layers) {
   struct Source {
     const Attribute* attribute;
     double step;
@@ -46,8 +48,8 @@ inline std::vector<std::vector<double>> face_records(const mesh_file::MeshData& 
     std::vector<std::vector<double>> corners(size);
     for (std::size_t i = 0; i < size; ++i) {
       const std::uint32_t v = mesh.corners[first + i];
-      const LatticePoint p = lattice.snap(mesh.positions[v]);
-      corners[i] = {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
+      const Point p = place(mesh.positions[v]);
+      corners[i] = {p.x, p.y, p.z};
       for (const auto& [name, source] : sources) {
         if (source.attribute->info.of == AttributeOf::vertex) add(corners[i], source, v);
         if (source.attribute->info.of == AttributeOf::corner) add(corners[i], source, first + i);
@@ -67,6 +69,15 @@ inline std::vector<std::vector<double>> face_records(const mesh_file::MeshData& 
   }
   std::sort(records.begin(), records.end());
   return records;
+}
+
+inline std::vector<std::vector<double>> face_records(const mesh_file::MeshData& mesh, const Lattice& lattice,
+                                                     const std::vector<MeshInfo::Layer>& layers) {
+  const auto place = [&](const Point& p) {
+    const LatticePoint q = lattice.snap(p);
+    return Point{static_cast<double>(q.x), static_cast<double>(q.y), static_cast<double>(q.z)};
+  };
+  return face_records(mesh, place, layers);
 }
 
 }  // namespace ramcdb::test

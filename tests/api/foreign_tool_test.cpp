@@ -251,5 +251,34 @@ TEST_F(ForeignTool, PaintedFilesAreToLookAt) {
   EXPECT_THROW((void)repository_->export_mesh(repository_->snapshot(), repository_ / "painted.obj", options), Error);
 }
 
+/// Faces that have no edge left in place, and others that stand twice: each vertex is moved in a file that numbers
+/// nothing as it was.
+TEST(ForeignToolOnUglyMeshes, VerticesOfDegenerateFacesMove) {
+  TestMesh mesh = degenerate_and_duplicate_faces();
+  for (const std::uint32_t v : {20U, 47U, 90U}) {
+    mesh.faces.push_back({v, v, v});
+    mesh.faces.push_back({v, v, v});
+    mesh.faces.push_back({v, v, v + 1});
+  }
+  TempRepository repository(mesh, 5000);
+  const Lattice lattice = repository->snapshot().lattice();
+  for (const std::uint32_t v : {5U, 20U, 21U, 47U, 90U, 143U}) {
+    const fs::path file = repository / ("v" + std::to_string(v) + ".stl");
+    (void)repository->checkout_file(repository->snapshot(), {ChartId(1)}, file, {});
+    FileMesh edited = read(file);
+    RegionMesh expected = whole(repository->snapshot());
+    const LatticePoint from = lattice.snap(mesh.positions[v]);
+    LatticePoint to = from;
+    to.z += 90;
+    std::replace(expected.points.begin(), expected.points.end(), from, to);
+    for (Point& p : edited.positions)
+      if (lattice.snap(p) == from) p = lattice.position(to);
+    std::reverse(edited.faces.begin(), edited.faces.end());
+    write(edited, file);
+    EXPECT_EQ(repository->commit_file(file, message("up")).vertices_moved, 1U) << v;
+    EXPECT_TRUE(face_set(whole(repository->snapshot())) == face_set(expected)) << v;
+  }
+}
+
 }  // namespace
 }  // namespace ramcdb::test

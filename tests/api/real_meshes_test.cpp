@@ -1,5 +1,8 @@
+#include <cmath>
 #include <cstdio>
+#include <limits>
 #include <map>
+#include <set>
 
 #include "tests/api/blobs_of.h"
 #include "tests/api/face_records.h"
@@ -84,14 +87,141 @@ void expect_the_round_trip(const fs::path& file) {
   EXPECT_TRUE(repository.verify({}).ok());
 }
 
-TEST(RealMeshes, GoInAndComeOut) {
+/// Positions as numbers whose bits can be compared: as float32 where all of the file are, for text says of those only
+/// what tells them apart.
+std::vector<std::vector<double>> exact_records(const mesh_file::MeshData& mesh, bool floats,
+                                               const std::vector<MeshInfo::Layer>& layers) {
+  const auto number = [&](double x) {
+    const double kept = floats ? static_cast<double>(static_cast<float>(x)) : x;
+    return kept == 0 && std::signbit(kept) ? std::numeric_limits<double>::denorm_min() : kept;
+  };
+  return face_records(
+      mesh,
+      [&](const Point& p) {
+        return Point{number(p.x), number(p.y), number(p.z)};
+      },
+      layers);
+}
+
+bool all_floats(const mesh_file::MeshData& mesh) {
+  return std::all_of(mesh.positions.begin(), mesh.positions.end(), [](const Point& p) {
+    const auto is_float = [](double x) { return static_cast<double>(static_cast<float>(x)) == x; };
+    return is_float(p.x) && is_float(p.y) && is_float(p.z);
+  });
+}
+
+void expect_every_bit(const fs::path& file) {
+  const TempFolder folder;
+  Repository::create(folder / "r");
+  Repository repository = Repository::open(folder / "r");
+  ImportOptions options;
+  options.name = "mesh";
+  options.lossless = true;
+  options.threads = 2;
+  (void)repository.import(file, options);
+  const Snapshot snapshot = repository.snapshot("mesh");
+  const bool soup = mesh_file::format_of(file) == mesh_file::Format::stl;
+  const fs::path out = folder / ("out" + (soup ? ".ply" : file.extension().string()));
+  (void)repository.export_mesh(snapshot, out, {});
+  const mesh_file::MeshData before = mesh_file::read_mesh(file), after = mesh_file::read_mesh(out);
+  const auto layers = snapshot.info().attributes;
+  EXPECT_TRUE(exact_records(before, all_floats(before), layers) == exact_records(after, all_floats(before), layers))
+      << "some bit differs";
+  EXPECT_TRUE(repository.verify({}).ok());
+}
+
+/// A vertex of each kind that is there: at a non-manifold edge, at a border, at a seam of values, and inside. None that
+/// shares its lattice point, which a triangle soup could not tell apart.
+std::map<std::string, std::uint32_t> vertices_to_move(const RegionMesh& region) {
+  std::map<LatticePoint, int> at;
+  for (const LatticePoint p : region.points) ++at[p];
+  std::map<std::string, std::uint32_t> found;
+  const auto add = [&](const char* kind, std::uint32_t v) {
+    if (at[region.points[v]] == 1) found.try_emplace(kind, v);
+  };
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  for (const Triangle& t : region.faces)
+    for (std::size_t i = 0; i < 3; ++i) ++edges[std::minmax(t[i], t[(i + 1) % 3])];
+  for (const auto& [edge, faces] : edges)
+    add(faces == 1 ? "border" : faces == 2 ? "inside" : "non-manifold edge", edge.first);
+  for (const Attribute& attribute : region.attributes) {
+    if (attribute.info.of != AttributeOf::corner) continue;
+    std::map<std::uint32_t, double> value;
+    for (std::size_t c = 0; c < attribute.count(); ++c) {
+      const double number = attribute.values[c * attribute.info.components];
+      const auto it = value.emplace(region.faces[c / 3][c % 3], number).first;
+      if (it->second != number) add("seam", it->first);
+    }
+  }
+  return found;
+}
+
+/// A chart with the vertex, and a neighbour where there is one.
+std::vector<ChartId> charts_with(const RegionMesh& region, const Snapshot& snapshot, std::uint32_t vertex) {
+  for (std::size_t f = 0; f < region.faces.size(); ++f)
+    for (const std::uint32_t v : region.faces[f])
+      if (v == vertex) return snapshot.find({{OfCharts{{region.charts[region.chart_of_face[f]]}}}, 1});
+  return region.charts;
+}
+
+/// Moves a vertex in a checked-out file of the mesh's own format, as a program would that knows no more than the file.
+void expect_the_edit(Repository& repository, const fs::path& out, std::uint32_t vertex) {
+  const Snapshot before = repository.snapshot();
+  const RegionMesh was = whole(before);
+  const std::vector<ChartId> charts = charts_with(was, before, vertex);
+  const RegionMesh region = before.read_with_attributes(charts);
+  const auto in_region = std::find(region.keys.begin(), region.keys.end(), was.keys[vertex]) - region.keys.begin();
+  const Point origin = repository.checkout_file(before, charts, out, {}).local_origin;
+
+  mesh_file::MeshData data = mesh_file::read_mesh(out);
+  LatticePoint to = was.points[vertex];
+  to.z += 300;
+  Point target = before.position(to);
+  for (int a = 0; a < 3; ++a) target[a] -= origin[a];
+  const auto stands_at = [&](const Point& p) {
+    return before.lattice().snap({p.x + origin.x, p.y + origin.y, p.z + origin.z}) == was.points[vertex];
+  };
+  if (data.soup) {
+    for (Point& p : data.positions)
+      if (stands_at(p)) p = target;
+  } else {
+    ASSERT_EQ(data.positions.size(), region.points.size());
+    ASSERT_TRUE(stands_at(data.positions[static_cast<std::size_t>(in_region)]));
+    data.positions[static_cast<std::size_t>(in_region)] = target;
+  }
+  mesh_file::MeshOutput edited;
+  edited.positions = data.positions;
+  edited.corners = data.corners;
+  edited.face_sizes = data.face_sizes;
+  edited.attributes = data.attributes;
+  edited.references = data.references;
+  edited.scalar = mesh_file::Scalar::float64;
+  (void)mesh_file::write_mesh(out, mesh_file::format_of(out), edited);
+
+  const CommitReport report = repository.commit_file(out, message("one vertex"));
+  EXPECT_EQ(report.values_changed, 0U);
+  const Snapshot after = repository.snapshot();
+  const RegionMesh is = whole(after);
+  std::multiset<LatticePoint> found(is.points.begin(), is.points.end());
+  std::multiset<LatticePoint> expected;
+  for (std::size_t v = 0; v < was.points.size(); ++v) expected.insert(v == vertex ? to : was.points[v]);
+  if (!data.soup) {
+    EXPECT_EQ(report.vertices_moved, 1U);
+    EXPECT_TRUE(found == expected) << "other vertices moved";
+  }
+  EXPECT_TRUE(found.contains(to));
+}
+
+/// Calls `check` with every real mesh; those that must be refused, and no others, throw.
+template <class Check>
+void for_each_mesh(const char* done, Check&& check) {
   const std::vector<fs::path> files = mesh_files();
   if (files.empty()) GTEST_SKIP() << "no folder of real meshes: set RAMCDB_MESHES";
   std::size_t taken = 0;
   for (const fs::path& file : files) {
     SCOPED_TRACE(file.filename().string());
     try {
-      expect_the_round_trip(file);
+      check(file);
       EXPECT_FALSE(must_be_refused(file));
       ++taken;
     } catch (const Error& e) {
@@ -99,8 +229,33 @@ TEST(RealMeshes, GoInAndComeOut) {
       std::printf("refused: %s\n", e.what());
     }
   }
-  std::printf("%zu of %zu meshes of up to %ju bytes went in and came out\n", taken, files.size(), kLargestFile);
+  std::printf("%zu of %zu meshes of up to %ju bytes %s\n", taken, files.size(), kLargestFile, done);
   EXPECT_GT(taken, 0U);
+}
+
+TEST(RealMeshes, GoInAndComeOut) { for_each_mesh("went in and came out", expect_the_round_trip); }
+
+TEST(RealMeshes, ComeOutBitByBit) { for_each_mesh("came out bit by bit", expect_every_bit); }
+
+TEST(RealMeshes, AreEditedWhereverTheyAreUgly) {
+  std::map<std::string, int> edits;
+  for_each_mesh("were edited", [&](const fs::path& file) {
+    const TempFolder folder;
+    Repository::create(folder / "r");
+    Repository repository = Repository::open(folder / "r");
+    ImportOptions options;
+    options.name = "mesh";
+    options.chart_faces = 1000;
+    options.threads = 2;
+    (void)repository.import(file, options);
+    for (const auto& [kind, vertex] : vertices_to_move(whole(repository.snapshot()))) {
+      SCOPED_TRACE(kind);
+      expect_the_edit(repository, folder / (kind + file.extension().string()), vertex);
+      ++edits[kind];
+    }
+    EXPECT_TRUE(repository.verify({}).ok());
+  });
+  for (const auto& [kind, count] : edits) std::printf("%s: a vertex moved in %d meshes\n", kind.c_str(), count);
 }
 
 }  // namespace
