@@ -199,7 +199,7 @@ ImportReport import_mesh(db::Store& store, const std::filesystem::path& file, co
   const mesh_file::Triangulation cut = mesh_file::triangulate(data);
   record.polygons = report.polygons = cut.polygons;
   report.polygons_as_fans = cut.fans;
-  const chartify::CanonicalMesh canonical = chartify::canonical_order({std::move(points), triangles_of(data, cut)});
+  chartify::CanonicalMesh canonical = chartify::canonical_order({std::move(points), triangles_of(data, cut)});
   const LayerSource layers(data, cut, canonical, record, exact, options.lossless || options.lossless_attributes);
   note_topology(record, canonical.mesh);
   for (const LatticePoint p : canonical.mesh.positions) record.range.add(p);
@@ -207,8 +207,7 @@ ImportReport import_mesh(db::Store& store, const std::filesystem::path& file, co
   chartify::Options chartify_options;
   chartify_options.target_faces = options.chart_faces;
   chartify_options.method = options.paper_chartify ? chartify::Method::paper : chartify::Method::refined;
-  const std::vector<std::uint32_t> polygons = layers.polygon_of_face();
-  chartify_options.polygon_of_face = polygons;
+  canonical.mesh.polygon_of_face = layers.polygon_of_face();
   chartify_options.threads = options.threads;
   chartify_options.progress = stage(options.progress, "chartify");
   const chartify::Charts charts = chartify::chartify(canonical.mesh, chartify_options);

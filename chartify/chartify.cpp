@@ -87,7 +87,7 @@ Charts chartify(const IndexedMesh& mesh, const Options& options) {
   Partition partition = options.method == Method::paper ? paper_charts(mesh, twins, neighbours, components, options)
                                                         : refined_charts(mesh, twins, neighbours, components, options);
   pack_small_components(components, options.target_faces, partition);
-  keep_polygons_whole(options.polygon_of_face, partition);
+  keep_polygons_whole(mesh.polygon_of_face, partition);
   renumber(partition);
   Charts charts;
   charts.chart_of_isolated_vertex = place_isolated_vertices(mesh, options.target_faces, partition);

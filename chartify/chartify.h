@@ -15,6 +15,9 @@ namespace ramcdb::chartify {
 struct IndexedMesh {
   std::vector<LatticePoint> positions;
   std::vector<Triangle> faces;
+  /// Per face the polygon that it is part of, 0, 1, ...: its faces end up in one chart, and are adjacent over edges
+  /// where other faces meet as well. Empty: every face is alone.
+  std::vector<std::uint32_t> polygon_of_face = {};
 };
 
 /// A mesh in canonical order, and where its parts came from.
@@ -41,8 +44,6 @@ inline constexpr std::uint32_t kMostTargetFaces = 200'000;
 struct Options {
   std::uint32_t target_faces = 5000;  ///< 1 .. kMostTargetFaces
   Method method = Method::refined;
-  /// Per face a polygon that it is part of, 0, 1, ...: its faces end up in one chart. Empty: every face is alone.
-  std::span<const std::uint32_t> polygon_of_face = {};
   unsigned threads = 1;                                 ///< changes the time, never the result
   std::function<void(double done)> progress = nullptr;  ///< 0..1; may throw to cancel
 };

@@ -1,5 +1,9 @@
 #include "chartify/cut_surface.h"
 
+#include <algorithm>
+#include <span>
+#include <utility>
+
 #include "chartify/partition.h"
 
 namespace ramcdb::chartify {
@@ -11,6 +15,7 @@ CutSurface::CutSurface(const IndexedMesh& mesh, const std::vector<std::uint32_t>
     find_fans();
     cuts = open_fans_of_split_vertices();
     cuts += lengthen_short_loops();
+    cuts += part_doubled_edges();
   }
 }
 
@@ -59,6 +64,24 @@ std::size_t CutSurface::open_fans_of_split_vertices() {
     if (!fan.closed || fans_at[start_of(fan.first)] < 2) continue;
     cut(fan.first);
     ++cuts;
+  }
+  return cuts;
+}
+
+std::size_t CutSurface::part_doubled_edges() {
+  std::size_t cuts = 0;
+  const auto fans = [&](HalfEdge h) { return std::pair(fan_of_[h], fan_of_[next_in_face(h)]); };
+  for (std::size_t e = 0; e < edges_.edge_count(); ++e) {
+    const auto at_edge = std::span(edges_.half_edges).subspan(edges_.first[e], edges_.first[e + 1] - edges_.first[e]);
+    if (at_edge.size() <= 2) continue;
+    for (const HalfEdge h : at_edge) {
+      if (is_border(h)) continue;
+      // Cutting all but one would do; which one would hang on the order of the faces.
+      const auto same = [&](HalfEdge other) { return other != h && fans(other) == fans(h); };
+      if (std::ranges::none_of(at_edge, same)) continue;
+      cut(h);
+      ++cuts;
+    }
   }
   return cuts;
 }

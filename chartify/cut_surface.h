@@ -13,7 +13,7 @@ namespace ramcdb::chartify {
 class CutSurface {
  public:
   /// Cuts every edge that two faces of one chart do not pass in opposite directions, and then as many more as it takes
-  /// until vertices of several fans have open ones only and no loop has two vertices.
+  /// until vertices of several fans have open ones only, no loop has two vertices, and no two edges the same ends.
   CutSurface(const IndexedMesh& mesh, const std::vector<std::uint32_t>& chart_of_face);
 
   [[nodiscard]] bool is_border(HalfEdge h) const { return mate_[h] == kNoTwin; }
@@ -35,9 +35,11 @@ class CutSurface {
   };
 
   void find_fans();
-  /// Both return how many edges they cut.
+  /// All return how many edges they cut.
   std::size_t open_fans_of_split_vertices();
   std::size_t lengthen_short_loops();
+  /// Where polygons stand several times: their diagonals between the same two fans.
+  std::size_t part_doubled_edges();
   void cut(HalfEdge h);
 
   const IndexedMesh& mesh_;

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 
 namespace ramcdb::chartify {
 namespace {
+
+/// Half-edges at one edge that are looked through for those of one polygon.
+constexpr std::size_t kMostAtEdge = 64;
 
 struct Ends {
   std::uint32_t low, high;
@@ -25,6 +29,21 @@ std::vector<HalfEdge> sort_by(const std::vector<HalfEdge>& order, std::size_t ke
   std::vector<HalfEdge> sorted(order.size());
   for (const HalfEdge h : order) sorted[at[key(h)]++] = h;
   return sorted;
+}
+
+bool names_a_vertex_twice(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+
+/// Of several half-edges on an edge, those of one polygon are twins. A degenerate face would leave loops of one edge.
+void join_polygons(const IndexedMesh& mesh, std::span<const HalfEdge> at_edge, std::vector<HalfEdge>& twins) {
+  for (std::size_t i = 0; i < at_edge.size(); ++i)
+    for (std::size_t j = i + 1; j < at_edge.size() && twins[at_edge[i]] == kNoTwin; ++j) {
+      const HalfEdge a = at_edge[i], b = at_edge[j];
+      const Triangle &one = mesh.faces[face_of(a)], &other = mesh.faces[face_of(b)];
+      if (mesh.polygon_of_face[face_of(a)] != mesh.polygon_of_face[face_of(b)] || twins[b] != kNoTwin) continue;
+      if (one[a % 3] == other[b % 3] || names_a_vertex_twice(one) || names_a_vertex_twice(other)) continue;
+      twins[a] = b;
+      twins[b] = a;
+    }
 }
 
 }  // namespace
@@ -50,8 +69,11 @@ EdgeGroups group_half_edges(const IndexedMesh& mesh) {
 std::vector<HalfEdge> find_twins(const IndexedMesh& mesh, const EdgeGroups& edges) {
   std::vector<HalfEdge> twins(edges.edge_of.size(), kNoTwin);
   for (std::size_t e = 0; e < edges.edge_count(); ++e) {
-    if (edges.first[e + 1] - edges.first[e] != 2) continue;
-    const HalfEdge a = edges.half_edges[edges.first[e]], b = edges.half_edges[edges.first[e] + 1];
+    const auto at_edge = std::span(edges.half_edges).subspan(edges.first[e], edges.first[e + 1] - edges.first[e]);
+    if (at_edge.size() > 2 && at_edge.size() <= kMostAtEdge && !mesh.polygon_of_face.empty())
+      join_polygons(mesh, at_edge, twins);
+    if (at_edge.size() != 2) continue;
+    const HalfEdge a = at_edge[0], b = at_edge[1];
     if (face_of(a) == face_of(b) || mesh.faces[face_of(a)][a % 3] == mesh.faces[face_of(b)][b % 3]) continue;
     twins[a] = b;
     twins[b] = a;

@@ -28,7 +28,8 @@ struct EdgeGroups {
 [[nodiscard]] EdgeGroups group_half_edges(const IndexedMesh& mesh);
 
 /// For every half-edge the one that two different faces share with it in opposite directions, where just these two lie
-/// on the edge; kNoTwin elsewhere. Faces are adjacent over such edges and no others.
+/// on the edge, or where both belong to one polygon; kNoTwin elsewhere. Faces are adjacent over such edges and no
+/// others.
 [[nodiscard]] std::vector<HalfEdge> find_twins(const IndexedMesh& mesh, const EdgeGroups& edges);
 
 }  // namespace ramcdb::chartify

@@ -197,7 +197,8 @@ void check_corners(const IndexedMesh& mesh, const WireNet& net) {
   }
 }
 
-/// Every edge that the mesh or the charts cut lies on a wire, and no edge lies on two.
+/// Every edge that the mesh or the charts cut lies on a wire, and no edge lies on two. Inside polygons that stand
+/// several times edges may be whole.
 void check_cut_edges(const IndexedMesh& mesh, const Charts& charts, const WireNet& net) {
   std::set<Edge> on_wire;
   for (const NetWire& wire : net.wires)
@@ -214,6 +215,15 @@ void check_cut_edges(const IndexedMesh& mesh, const Charts& charts, const WireNe
       sides[undirected(u, v)].push_back({f, u < v});
     }
   for (const auto& [edge, of_edge] : sides) {
+    std::map<std::uint32_t, int> of_polygon;
+    for (const Side& side : of_edge)
+      if (!mesh.polygon_of_face.empty()) ++of_polygon[mesh.polygon_of_face[side.face]];
+    const bool inside_polygons = !of_polygon.empty() && std::all_of(of_polygon.begin(), of_polygon.end(),
+                                                                    [](const auto& p) { return p.second == 2; });
+    if (inside_polygons) {
+      on_wire.erase(edge);
+      continue;
+    }
     const bool joins = of_edge.size() == 2 && of_edge[0].face != of_edge[1].face &&
                        of_edge[0].forward != of_edge[1].forward &&
                        charts.chart_of_face[of_edge[0].face] == charts.chart_of_face[of_edge[1].face];

@@ -137,6 +137,34 @@ TEST(WireNet, SheetsThatMeetAlongALineShareItsWire) {
   EXPECT_EQ(shared, 1);
 }
 
+/// Quads that all stand twice, once from either side: four triangles meet at each diagonal, yet inside a quad it is no
+/// border.
+TEST(WireNet, DiagonalsOfDoubledQuadsAreNoWires) {
+  constexpr std::uint32_t kSide = 6;
+  IndexedMesh sheet;
+  for (std::int32_t y = 0; y <= static_cast<std::int32_t>(kSide); ++y)
+    for (std::int32_t x = 0; x <= static_cast<std::int32_t>(kSide); ++x) sheet.positions.push_back({x, y, x * y});
+  for (std::uint32_t y = 0; y < kSide; ++y)
+    for (std::uint32_t x = 0; x < kSide; ++x) {
+      const std::uint32_t a = y * (kSide + 1) + x, b = a + 1, c = b + kSide + 1, d = c - 1;
+      for (const Triangle& t : {Triangle{a, b, c}, Triangle{a, c, d}, Triangle{a, c, b}, Triangle{a, d, c}})
+        sheet.faces.push_back(t);
+    }
+  CanonicalMesh canonical = canonical_order(sheet);
+  const std::size_t wires_of_triangles = in_one_chart(canonical.mesh).wires.size();
+  for (const std::uint32_t f : canonical.source_face) canonical.mesh.polygon_of_face.push_back(f / 2);
+  const WireNet net = in_one_chart(canonical.mesh);
+  EXPECT_EQ(wires_of_triangles - net.wires.size(), kSide * kSide - 2);
+  std::size_t diagonals = 0;
+  for (const NetWire& wire : net.wires)
+    for (std::size_t i = 1; i < wire.vertices.size(); ++i) {
+      const LatticePoint p = canonical.mesh.positions[wire.vertices[i - 1]];
+      const LatticePoint q = canonical.mesh.positions[wire.vertices[i]];
+      diagonals += p.x != q.x && p.y != q.y;
+    }
+  EXPECT_EQ(diagonals, 2U) << "of the two corners of the sheet where both sides hang together all around the quad";
+}
+
 /// Two faces back to back share three edges; a degenerate face has an edge from a vertex to itself.
 TEST(WireNet, OfFacesThatAreHardlySurfaces) {
   const std::vector<LatticePoint> points{{0, 0, 0}, {9, 0, 0}, {0, 9, 0}};

@@ -188,5 +188,28 @@ TEST(LayerOrder, VisitsEverythingOnce) {
   }
 }
 
+/// On charts that are no manifold surface, too, faces have neighbours: another side of the same edge each.
+TEST(LayerOrderTest, TwinsLieAtTheSameEdgeOfAnotherFace) {
+  std::size_t twins = 0;
+  for (const NamedChart& named : all_charts()) {
+    SCOPED_TRACE(named.name);
+    const Chart& chart = named.chart;
+    const LayerOrder order(chart);
+    EXPECT_EQ(order.entries().size(), chart.faces.size());
+    EXPECT_EQ(order.vertices().size(), chart.positions.size());
+    const auto origin = [&](std::uint32_t c) { return chart.faces[c / 3][c % 3]; };
+    for (std::uint32_t c = 0; c < 3 * chart.faces.size(); ++c) {
+      const std::uint32_t twin = order.twin(c);
+      if (twin == LayerOrder::kNone) continue;
+      ++twins;
+      EXPECT_EQ(order.twin(twin), c);
+      EXPECT_NE(twin / 3, c / 3);
+      EXPECT_EQ(origin(twin), origin(LayerOrder::next(c)));
+      EXPECT_EQ(origin(c), origin(LayerOrder::next(twin)));
+    }
+  }
+  EXPECT_GT(twins, 1000U);
+}
+
 }  // namespace
 }  // namespace ramcdb::codec
