@@ -42,6 +42,7 @@ void read_ply(const FileBytes& file, MeshData& mesh, const Progress& progress);
 void read_obj(const FileBytes& file, MeshData& mesh, const Progress& progress);
 void read_off(const FileBytes& file, MeshData& mesh, const Progress& progress);
 void read_stl(const FileBytes& file, MeshData& mesh, const Progress& progress);
+void read_gltf(const FileBytes& file, MeshData& mesh, const Progress& progress);
 
 /// Ends a face of so many corners, which are there already. Sizes are kept from the first face on that is no triangle.
 inline void end_face(MeshData& mesh, std::uint32_t corners) {

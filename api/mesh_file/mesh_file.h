@@ -13,7 +13,8 @@
 /// Ordinary mesh files, as they are: nothing is repaired, and what is not kept is named.
 namespace ramcdb::mesh_file {
 
-enum class Format { ply, obj, off, stl };
+/// gltf: JSON with its buffers in it or beside it; glb: the same in one binary file.
+enum class Format { ply, obj, off, stl, gltf, glb };
 
 /// From the extension, in any case. Throws invalid_argument listing the formats.
 [[nodiscard]] Format format_of(const std::filesystem::path& file);
