@@ -117,7 +117,7 @@ class GltfReader {
    public:
     Names(std::vector<bool> used, std::string_view unnamed) : used_(std::move(used)), unnamed_(unnamed) {}
 
-    /// Equal names get a number behind them, and those without a name one of their own.
+    /// Equal names get a number behind them, and those without a name one made of `unnamed`, unless that is empty.
     template <class NameOf>
     void give(NameOf name_of) {
       std::set<std::string> taken;
@@ -128,7 +128,7 @@ class GltfReader {
       number.resize(used_.size(), kNone);
       for (Index i = 0; i < used_.size(); ++i) {
         if (!used_[i]) continue;
-        const std::string wanted = name_of(i).empty() ? fmt::format("{}_{}", unnamed_, i) : name_of(i);
+        const std::string wanted = name_of(i).empty() ? generated(i) : name_of(i);
         std::string name = wanted;
         const auto is_taken = [&] { return given.contains(name) || (taken.contains(name) && name != name_of(i)); };
         for (std::size_t& n = next.try_emplace(wanted, 2).first->second; is_taken(); ++n)
@@ -143,19 +143,25 @@ class GltfReader {
     std::vector<double> number;  ///< by place in the file
 
    private:
+    [[nodiscard]] std::string generated(Index i) const {
+      return unnamed_.empty() ? std::string() : fmt::format("{}_{}", unnamed_, i);
+    }
+
     std::vector<bool> used_;
     std::string_view unnamed_;
   };
 
-  /// Which node faces are of, unless there is but one without a name.
+  /// Which node faces are of, unless no node has a name and all faces are of one.
   void add_objects() {
     std::vector<bool> used(scene_.instances.size());
     for (const Piece& piece : scene_.pieces)
       if (piece.faces) used[piece.instance] = true;
-    const auto objects = std::count(used.begin(), used.end(), true);
-    const auto one = static_cast<std::size_t>(std::find(used.begin(), used.end(), true) - used.begin());
-    if (objects == 0 || (objects == 1 && scene_.instances[one].name.empty())) return;
-    Names names(std::move(used), "object");
+    std::size_t nameless = 0;
+    for (Index i = 0; i < used.size(); ++i)
+      if (used[i] && scene_.instances[i].name.empty()) ++nameless;
+    const auto count = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
+    if (count == 0 || (count == 1 && nameless == 1)) return;
+    Names names(std::move(used), nameless == 1 ? "" : "object");
     names.give([&](Index i) -> const std::string& { return scene_.instances[i].name; });
     Attribute& attribute = add_face_attribute("object", Meaning::group);
     for (const Piece& piece : scene_.pieces)
@@ -177,10 +183,14 @@ class GltfReader {
     Names names(std::move(used), "material");
     names.give([&](Index i) -> const std::string& { return document_.materials[i]; });
     Attribute& attribute = add_face_attribute("material", Meaning::material);
+    const auto none = static_cast<double>(names.names.size());  // as OBJ has it, called ""
+    bool any_none = false;
     for (const Piece& piece : scene_.pieces) {
       const auto material = piece.primitive->material;
-      attribute.values.insert(attribute.values.end(), piece.faces, material ? names.number[*material] : kNone);
+      any_none |= !material && piece.faces;
+      attribute.values.insert(attribute.values.end(), piece.faces, material ? names.number[*material] : none);
     }
+    if (any_none) names.names.emplace_back();
     attribute.info.names = std::move(names.names);
   }
 

@@ -56,9 +56,10 @@ Transform::Transform(const Matrix& matrix) : m_(matrix), linear_is_identity_(has
 }
 
 Point Transform::point(const Point& p) const {
-  const Point moved = linear_is_identity_ ? p : direction(p);
-  if (!moves_) return moved;
-  return {moved.x + m_[at(0, 3)], moved.y + m_[at(1, 3)], moved.z + m_[at(2, 3)]};
+  Point moved = linear_is_identity_ ? p : direction(p);
+  for (std::size_t r = 0; r < 3; ++r)
+    if (m_[at(r, 3)] != 0) moved[static_cast<int>(r)] += m_[at(r, 3)];  // -0 stays
+  return moved;
 }
 
 Point Transform::direction(const Point& d) const {

@@ -74,7 +74,8 @@ struct MeshOutput {
   std::span<const std::uint32_t> corners;     ///< vertex indices, face after face
   std::span<const std::uint32_t> face_sizes;  ///< corners per face; empty when all faces are triangles
   Scalar scalar = Scalar::float32;
-  std::span<const std::uint64_t> vertex_ids;  ///< PLY only; may be empty
+  Point origin;                               ///< glTF of float64: a translation to try, before others
+  std::span<const std::uint64_t> vertex_ids;  ///< PLY and glTF only; may be empty
   std::span<const FaceColor> face_colors;     ///< PLY and OFF; may be empty
   std::span<const Attribute> attributes;      ///< what the format cannot hold is left out and counted in the result
   std::span<const std::string> references;    ///< OBJ and PLY
