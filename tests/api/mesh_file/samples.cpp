@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "tests/api/mesh_file/files.h"
+#include "tests/api/mesh_file/gltf_builder.h"
 
 namespace ramcdb::test {
 namespace {
@@ -115,6 +116,8 @@ std::vector<Sample> samples() {
        4, 2, false},
       {"text.stl", ascii_stl(), 6, 2, true},
       {"binary.stl", binary_stl("binary", 0x8001), 6, 2, true},
+      {"all.glb", gltf_sample().glb(), 12, 6, true},
+      {"all.gltf", gltf_sample().gltf(), 12, 6, true},
       {"solid.stl", binary_stl("solid as some exporters write it", 0), 6, 2, true},
   };
 }
