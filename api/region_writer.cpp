@@ -90,22 +90,33 @@ WrittenRegion write_region(const Snapshot& snapshot, const RegionMesh& region, c
   Point origin;
   const bool floats = floats_hold(lattice, region.points, origin);
   out.scalar = floats ? mesh_file::Scalar::float32 : mesh_file::Scalar::float64;
-  if (!floats && format == mesh_file::Format::stl) {
-    if (!may_shift || !floats_hold(lattice, region.points, lattice.origin))
-      throw Error(Errc::invalid_argument, "STL holds 32-bit floats, too coarse for these coordinates", file.string(),
-                  "write .ply, .obj or .off");
-    origin = lattice.origin;
-    out.scalar = mesh_file::Scalar::float32;
+  const bool stl = format == mesh_file::Format::stl;
+  const bool gltf = format == mesh_file::Format::gltf || format == mesh_file::Format::glb;
+  if (!floats && (stl || gltf)) {
+    // glTF says in the file where its floats begin.
+    if ((stl && !may_shift) || !floats_hold(lattice, region.points, lattice.origin))
+      throw Error(Errc::invalid_argument,
+                  fmt::format("{} holds 32-bit floats, too coarse for these coordinates", stl ? "STL" : "glTF"),
+                  file.string(), "write .ply, .obj or .off");
+    if (stl) {
+      origin = lattice.origin;
+      out.scalar = mesh_file::Scalar::float32;
+    } else {
+      out.origin = lattice.origin;
+    }
   }
   std::vector<Point> positions;
   positions.reserve(region.points.size());
   for (const LatticePoint p : region.points) {
     Point q = lattice.position(p);
     for (int a = 0; a < 3; ++a) q[a] -= origin[a];
+    if (gltf && !floats)
+      for (int a = 0; a < 3; ++a)
+        q[a] = static_cast<double>(static_cast<float>(q[a] - out.origin[a])) + out.origin[a];
     positions.push_back(q);
   }
   std::vector<std::uint64_t> ids;
-  if (with_ids && format == mesh_file::Format::ply)
+  if (with_ids && (format == mesh_file::Format::ply || gltf))
     for (const VertexKey& key : region.keys) ids.push_back(key.packed());
   const RegionFaces faces(region);
   std::vector<FaceColor> face_colors;
