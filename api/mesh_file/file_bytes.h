@@ -41,6 +41,8 @@ class FileBytes {
 void read_ply(const FileBytes& file, MeshData& mesh, const Progress& progress);
 void read_obj(const FileBytes& file, MeshData& mesh, const Progress& progress);
 void read_off(const FileBytes& file, MeshData& mesh, const Progress& progress);
+/// What stands behind the line "OFF BINARY", from byte `offset` on.
+void read_binary_off(const FileBytes& file, std::size_t offset, MeshData& mesh);
 void read_stl(const FileBytes& file, MeshData& mesh, const Progress& progress);
 void read_gltf(const FileBytes& file, MeshData& mesh, const Progress& progress);
 

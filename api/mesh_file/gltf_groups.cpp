@@ -140,7 +140,7 @@ Groups group_faces(const MeshOutput& mesh, const Vertices& vertices, const Attri
         mesh.corners.size() / 3, [](std::size_t t) { return t; },
         [](std::size_t t, std::size_t k) { return 3 * t + k; });
   const Triangulation cut = triangulate(mesh.positions, mesh.corners, mesh.face_sizes);
-  dropped.add("polygons cut into triangles", cut.polygons);
+  dropped.add("polygons (cut into triangles)", cut.polygons);
   return grouper.run(
       cut.corners.size(), [&](std::size_t t) { return std::size_t{cut.face[t]}; },
       [&](std::size_t t, std::size_t k) { return std::size_t{cut.corners[t][k]}; });

@@ -174,9 +174,9 @@ void count_changes(const OutColumn& column, const Vertices& vertices, std::size_
     rounded += is_rounded;
   }
   const std::string name = fmt::format("attribute '{}'", shown(column.attribute->info.name));
-  dropped.add(fmt::format("vertices without {}, which has 0 there", name), absent);
-  dropped.add(fmt::format("values of {} that are not finite, which are 0", name), infinite);
-  dropped.add(fmt::format("values of {} rounded to 32-bit floats", name), rounded);
+  dropped.add(fmt::format("vertices without {} (written as 0)", name), absent);
+  dropped.add(fmt::format("values of {} that are not finite (written as 0)", name), infinite);
+  dropped.add(fmt::format("values of {} that are no 32-bit floats (rounded)", name), rounded);
 }
 
 }  // namespace ramcdb::mesh_file::gltf

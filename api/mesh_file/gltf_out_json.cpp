@@ -61,7 +61,7 @@ class Composer {
     try {
       (void)Json(name).dump();
     } catch (const Json::exception&) {
-      dropped_.add("names with bytes that are no UTF-8, which are replaced");
+      dropped_.add("names with bytes that are no UTF-8 (replaced)");
     }
     return name;
   }

@@ -95,7 +95,7 @@ Vertices split_vertices(const MeshOutput& mesh, const std::vector<const Attribut
   Vertices vertices;
   vertices.count = mesh.positions.size();
   if (!attributes.empty()) vertices = Splitter(mesh, attributes).run();
-  dropped.add("vertices written again because values of their corners differ", vertices.count - mesh.positions.size());
+  dropped.add("vertices with corners that differ (written more than once)", vertices.count - mesh.positions.size());
   return vertices;
 }
 

@@ -224,7 +224,7 @@ TEST(GltfAttributes, CornersThatDifferMakeVertices) {
   std::vector<mesh_file::Dropped> left_out;
   const auto again = write_and_read("b.glb", output_of(mesh, Scalar::float32), false, &left_out);
   ASSERT_EQ(left_out.size(), 1U);
-  EXPECT_EQ(left_out[0].what, "vertices written again because values of their corners differ");
+  EXPECT_EQ(left_out[0].what, "vertices with corners that differ (written more than once)");
   EXPECT_EQ(left_out[0].count, 1U);
   EXPECT_EQ(again.corners, (std::vector<std::uint32_t>{0, 1, 2, 0, 3, 4}));
   EXPECT_EQ(again.positions[3], again.positions[2]);
@@ -276,9 +276,9 @@ TEST(GltfAttributes, WhatCannotBeHeldIsLeftOutOrSaid) {
                                                   "4 vertex attribute 'five'", "2 face attribute 'group'",
                                                   "2 face attribute 'smoothing'", "1 reference 'mtllib a.mtl'",
                                                   "4 third number of attribute 'texture'",
-                                                  "1 values of attribute 'normal' rounded to 32-bit floats",
-                                                  "1 vertices without attribute 'texture', which has 0 there",
-                                                  "1 values of attribute 'infinite' that are not finite, which are 0"));
+                                                  "1 values of attribute 'normal' that are no 32-bit floats (rounded)",
+                                                  "1 vertices without attribute 'texture' (written as 0)",
+                                                  "1 values of attribute 'infinite' that are not finite (written as 0)"));
   EXPECT_EQ(find(again, "color").values[0], 1);
   EXPECT_THAT(find(again, "exact").values, ElementsAre(1 << 24, -5, 0, 1));
   EXPECT_EQ(find(again, "infinite").values[0], 0);
