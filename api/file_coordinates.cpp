@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 
 #include "api/snapshot_impl.h"
 #include "ramcdb/error.h"
@@ -13,6 +14,7 @@ namespace ramcdb::detail {
 namespace {
 
 using mesh_file::Format;
+using mesh_file::is_gltf;
 using mesh_file::Scalar;
 using Float = std::numeric_limits<float>;
 
@@ -68,6 +70,11 @@ class Positions {
     return middle;
   }
 
+  [[nodiscard]] std::vector<Point> as_floats_from(const Point& origin) && {
+    for (Point& p : positions_)
+      for (int a = 0; a < 3; ++a) p[a] = static_cast<double>(static_cast<float>(p[a] - origin[a])) + origin[a];
+    return std::move(positions_);
+  }
   [[nodiscard]] std::vector<Point> relative_to(const Point& origin) && {
     for (Point& p : positions_)
       for (int a = 0; a < 3; ++a)
@@ -109,6 +116,7 @@ std::optional<Point> origin_for(const Positions& positions, Format format, const
   if (!may_shift || options.local_origin == false) return std::nullopt;
   const Point middle = positions.near_middle();
   if (options.local_origin) return middle;
+  if (is_gltf(format)) return std::nullopt;  // it has an origin of its own
   const bool too_coarse = !positions.held_by_floats({});
   const bool too_long = is_text(format, options) && !positions.held_by_six_digits({});
   const bool helps = positions.held_by_floats(middle) && (too_coarse || positions.held_by_six_digits(middle));
@@ -122,16 +130,21 @@ FileCoordinates coordinates_for(const Snapshot& snapshot, const RegionMesh& regi
   Positions positions(snapshot, region);
   FileCoordinates coordinates;
   coordinates.origin = origin_for(positions, format, options, may_shift).value_or(Point{});
-  const bool as_doubles = !may_shift && snapshot.impl().record().written_as == NumberType::float64;
-  if ((as_doubles && format != Format::stl) || !positions.held_by_floats(coordinates.origin))
-    coordinates.scalar = Scalar::float64;
-  if (coordinates.scalar == Scalar::float64 && format == Format::stl)
-    throw Error(Errc::invalid_argument, "STL holds 32-bit floats, too coarse for these coordinates", {},
-                "write .ply, .obj or .off");
+  const bool only_floats = format == Format::stl || is_gltf(format);
+  const bool as_doubles = !may_shift && !only_floats && snapshot.impl().record().written_as == NumberType::float64;
+  if (as_doubles || !positions.held_by_floats(coordinates.origin)) coordinates.scalar = Scalar::float64;
+  if (coordinates.scalar == Scalar::float64 && is_gltf(format)) coordinates.file_origin = positions.near_middle();
+  if (coordinates.scalar == Scalar::float64 && only_floats && !positions.held_by_floats(coordinates.file_origin))
+    throw Error(
+        Errc::invalid_argument,
+        std::string(is_gltf(format) ? "glTF" : "STL") + " holds 32-bit floats, too coarse for these coordinates", {},
+        "write .ply, .obj or .off");
   if (coordinates.scalar == Scalar::float64 && !positions.held_by_doubles(coordinates.origin))
     throw Error(Errc::invalid_argument, "coordinates relative to a local origin would lose bits of this lossless mesh",
                 {}, "leave out --local-origin");
-  coordinates.positions = std::move(positions).relative_to(coordinates.origin);
+  coordinates.positions = coordinates.file_origin == Point{}
+                              ? std::move(positions).relative_to(coordinates.origin)
+                              : std::move(positions).as_floats_from(coordinates.file_origin);
   return coordinates;
 }
 

@@ -12,13 +12,14 @@ namespace ramcdb::detail {
 struct FileCoordinates {
   mesh_file::Scalar scalar = mesh_file::Scalar::float32;
   Point origin;                  ///< that they are relative to; model units
+  Point file_origin;             ///< that the file itself says its float32 are relative to (glTF)
   std::vector<Point> positions;  ///< per vertex of the region, as written
 };
 
 /// float32 where it will do (and, for a whole mesh that is not to be edited, its file's numbers were no doubles), else
 /// float32 relative to a point near the region when `may_shift`, else float64; and as FileOptions::local_origin says.
-/// Throws invalid_argument when the format has float32 only and that will not do, and when an origin is asked for that
-/// could not be undone.
+/// glTF has float32 only, but says in the file where they begin. Throws invalid_argument when the format has float32
+/// only and that will not do, and when an origin is asked for that could not be undone.
 [[nodiscard]] FileCoordinates coordinates_for(const Snapshot& snapshot, const RegionMesh& region,
                                               mesh_file::Format format, const FileOptions& options, bool may_shift);
 

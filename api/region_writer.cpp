@@ -64,8 +64,9 @@ WrittenRegion write_region(const Snapshot& snapshot, const RegionMesh& region, c
   const FileCoordinates coordinates = coordinates_for(snapshot, region, format, options, may_shift);
   mesh_file::MeshOutput out;
   out.scalar = coordinates.scalar;
+  out.origin = coordinates.file_origin;
   std::vector<std::uint64_t> ids;
-  if (with_ids && format == mesh_file::Format::ply)
+  if (with_ids && (format == mesh_file::Format::ply || mesh_file::is_gltf(format)))
     for (const VertexKey& key : region.keys) ids.push_back(key.packed());
   const RegionFaces faces(region);
   std::vector<FaceColor> face_colors;

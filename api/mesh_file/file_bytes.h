@@ -41,7 +41,10 @@ class FileBytes {
 void read_ply(const FileBytes& file, MeshData& mesh, const Progress& progress);
 void read_obj(const FileBytes& file, MeshData& mesh, const Progress& progress);
 void read_off(const FileBytes& file, MeshData& mesh, const Progress& progress);
+/// What stands behind the line "OFF BINARY", from byte `offset` on.
+void read_binary_off(const FileBytes& file, std::size_t offset, MeshData& mesh);
 void read_stl(const FileBytes& file, MeshData& mesh, const Progress& progress);
+void read_gltf(const FileBytes& file, MeshData& mesh, const Progress& progress);
 
 /// Ends a face of so many corners, which are there already. Sizes are kept from the first face on that is no triangle.
 inline void end_face(MeshData& mesh, std::uint32_t corners) {

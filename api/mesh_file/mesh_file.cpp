@@ -42,8 +42,10 @@ Format format_of(const std::filesystem::path& file) {
   if (extension == ".obj") return Format::obj;
   if (extension == ".off") return Format::off;
   if (extension == ".stl") return Format::stl;
+  if (extension == ".gltf") return Format::gltf;
+  if (extension == ".glb") return Format::glb;
   throw Error(Errc::invalid_argument, fmt::format("unknown mesh format '{}'", extension), file.string(),
-              "use .ply, .obj, .off or .stl");
+              "use .ply, .obj, .off, .stl, .glb or .gltf");
 }
 
 MeshData read_mesh(const std::filesystem::path& path, const std::function<void(double)>& progress) {
@@ -62,6 +64,10 @@ MeshData read_mesh(const std::filesystem::path& path, const std::function<void(d
       break;
     case Format::stl:
       read_stl(file, mesh, progress);
+      break;
+    case Format::gltf:
+    case Format::glb:
+      read_gltf(file, mesh, progress);
       break;
   }
   check(file, mesh);

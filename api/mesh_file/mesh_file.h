@@ -13,7 +13,9 @@
 /// Ordinary mesh files, as they are: nothing is repaired, and what is not kept is named.
 namespace ramcdb::mesh_file {
 
-enum class Format { ply, obj, off, stl };
+/// gltf: JSON with its buffers in it or beside it; glb: the same in one binary file.
+enum class Format { ply, obj, off, stl, gltf, glb };
+[[nodiscard]] constexpr bool is_gltf(Format format) { return format == Format::gltf || format == Format::glb; }
 
 /// From the extension, in any case. Throws invalid_argument listing the formats.
 [[nodiscard]] Format format_of(const std::filesystem::path& file);
@@ -73,10 +75,11 @@ struct MeshOutput {
   std::span<const std::uint32_t> corners;     ///< vertex indices, face after face
   std::span<const std::uint32_t> face_sizes;  ///< corners per face; empty when all faces are triangles
   Scalar scalar = Scalar::float32;
-  std::span<const std::uint64_t> vertex_ids;  ///< PLY only; may be empty
+  std::span<const std::uint64_t> vertex_ids;  ///< PLY and glTF only; may be empty
   std::span<const FaceColor> face_colors;     ///< PLY and OFF; may be empty
   std::span<const Attribute> attributes;      ///< what the format cannot hold is left out and counted in the result
   std::span<const std::string> references;    ///< OBJ and PLY
+  Point origin;                               ///< glTF of float64: a translation to try, before others
 };
 
 /// Writes beside the file and renames into place, so that a failure leaves what was there. Text numbers are the

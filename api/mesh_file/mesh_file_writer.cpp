@@ -104,6 +104,12 @@ std::vector<Dropped> write_mesh(const std::filesystem::path& file, Format format
     case Format::stl:
       write_stl(out, mesh, dropped);
       break;
+    case Format::gltf:
+      write_gltf(out, file, mesh, dropped);
+      break;
+    case Format::glb:
+      write_glb(out, file, mesh, dropped);
+      break;
   }
   out.commit();
   return dropped.take();

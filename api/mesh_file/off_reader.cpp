@@ -36,7 +36,7 @@ Layout parse_keyword(const TextScanner& scan, std::string_view keyword) {
 class OffReader {
  public:
   OffReader(const FileBytes& file, MeshData& mesh, const Progress& progress)
-      : scan_(file, 0, 0, progress), mesh_(mesh), size_(file.text().size()) {
+      : file_(file), scan_(file, 0, 0, progress), mesh_(mesh), size_(file.text().size()) {
     scan_.comment = '#';
   }
 
@@ -46,7 +46,11 @@ class OffReader {
     if (first.size() >= 3 && first.substr(first.size() - 3) == "OFF") {
       layout = parse_keyword(scan_, first);
       first = scan_.word_anywhere();
-      if (first == "BINARY") throw scan_.bad("binary OFF is not read: convert it to text OFF or PLY");
+      if (first == "BINARY") {
+        if (layout.texture || layout.color || layout.normal)
+          throw scan_.bad("binary OFF with colours, normals or texture coordinates of vertices is not read");
+        return read_binary_off(file_, scan_.offset(), mesh_);
+      }
     }
     const std::size_t vertices = count(scan_.parse_integer(first, "the number of vertices"), 6);
     const std::size_t faces = count(scan_.integer_anywhere("the number of faces"), 2);
@@ -122,6 +126,7 @@ class OffReader {
   static constexpr std::size_t kNormal = 3, kTexture = 2, kRgb = 3, kRgba = 4;
   static constexpr std::size_t kMostWords = kNormal + kRgba + kTexture;
 
+  const FileBytes& file_;
   TextScanner scan_;
   MeshData& mesh_;
   std::size_t size_;

@@ -16,6 +16,8 @@ void write_ply(NewFile& out, const MeshOutput& mesh, bool ascii, DroppedCounter&
 void write_obj(NewFile& out, const MeshOutput& mesh, DroppedCounter& dropped);
 void write_off(NewFile& out, const MeshOutput& mesh, DroppedCounter& dropped);
 void write_stl(NewFile& out, const MeshOutput& mesh, DroppedCounter& dropped);
+void write_gltf(NewFile& out, const std::filesystem::path& file, const MeshOutput& mesh, DroppedCounter& dropped);
+void write_glb(NewFile& out, const std::filesystem::path& file, const MeshOutput& mesh, DroppedCounter& dropped);
 
 [[nodiscard]] inline NumberType number_type(Scalar scalar) {
   return scalar == Scalar::float32 ? NumberType::float32 : NumberType::float64;

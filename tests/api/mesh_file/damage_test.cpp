@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "ramcdb/error.h"
@@ -81,15 +82,24 @@ TEST_P(Damage, EveryByteMissingOrTwice) {
 
 INSTANTIATE_TEST_SUITE_P(Samples, Damage, testing::ValuesIn(samples()), [](const auto& test) {
   std::string name = test.param.name;
-  name[name.size() - 4] = '_';
+  std::replace(name.begin(), name.end(), '.', '_');
   return name;
 });
+
+/// glTF has float32 and triangles only, and writes vertices again where corners differ.
+void expect_written_as_gltf(const mesh_file::MeshData& mesh, const std::filesystem::path& file) {
+  (void)mesh_file::write_mesh(file, mesh_file::Format::glb, output_of(mesh, mesh_file::Scalar::float32));
+  const auto again = mesh_file::read_mesh(file);
+  ASSERT_TRUE(is_sound(again)) << file;
+  EXPECT_GE(again.positions.size(), mesh.positions.size()) << file;
+  EXPECT_EQ(again.face_count(), mesh_file::triangulate(mesh).corners.size()) << file;
+}
 
 /// What is read of damaged files can be written in every format, and comes back the same.
 TEST(Damaged, WhatIsReadIsWritten) {
   const ScratchFolder scratch;
   for (const Sample& sample : samples())
-    for (std::size_t at = 0; at < sample.bytes.size(); ++at) {
+    for (std::size_t at = 0; at<sample.bytes.size(); at += sample.bytes.size()> 2000 ? 7 : 1) {
       std::string bytes = sample.bytes;
       bytes[at] = bytes[at] == '7' ? '-' : '7';
       try {
@@ -104,6 +114,7 @@ TEST(Damaged, WhatIsReadIsWritten) {
           if (mesh_file::format_of(sample.name) == mesh_file::format_of(name))
             expect_same(again.attributes, mesh.attributes);
         }
+        expect_written_as_gltf(mesh, scratch.file(sample.name + ".glb"));
       } catch (const Error& error) {
         EXPECT_NE(std::string(error.what()).find(sample.name), std::string::npos) << error.what();
       }

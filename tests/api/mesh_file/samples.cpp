@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "tests/api/mesh_file/files.h"
+#include "tests/api/mesh_file/gltf_builder.h"
 
 namespace ramcdb::test {
 namespace {
@@ -94,6 +95,20 @@ std::string sample_ply(int encoding) {
   return bytes;
 }
 
+std::string sample_off(bool big_endian, bool colors) {
+  std::string bytes = "OFF BINARY\n";
+  const auto put = [&](auto value) { bytes += bytes_of(value, big_endian); };
+  for (const int count : {4, 2, 0}) put(count);
+  for (const float number : {0.0F, 0.0F, 0.0F, 1.5F, 0.0F, 0.25F, 0.0F, -2.0F, 0.0F, 0.25F, 1.0F, 3.0F}) put(number);
+  for (const int number : {3, 0, 1, 2}) put(number);
+  if (colors) put(0);
+  for (const int number : {4, 2, 1, 3, 0}) put(number);
+  if (colors) put(4);
+  if (colors)
+    for (const float number : {1.0F, 0.5F, 0.0F, 1.0F}) put(number);
+  return bytes;
+}
+
 std::vector<Sample> samples() {
   const std::string faces = "3 0 1 2\n3 2 1 3\n";
   return {
@@ -106,6 +121,8 @@ std::vector<Sample> samples() {
        true},
       {"fractions.off", "CNOFF\n4 2 0\n" + vertex_lines("", " 0 0 1 0.5 1 .25") + "3 0 1 2 .1 2 3\n3 2 1 3\n", 4, 2,
        true},
+      {"big.off", sample_off(true, true), 4, 2, true},
+      {"little.off", sample_off(false, false), 4, 2, true},
       {"all.obj", "# a sample\nmtllib a.mtl\n" + vertex_lines("v ", "") + "vn 0 0 1\nf 1//1 2//1 3//1\nf -2 -3 -1\n", 4,
        2, false},
       {"more.obj",
@@ -115,6 +132,8 @@ std::vector<Sample> samples() {
        4, 2, false},
       {"text.stl", ascii_stl(), 6, 2, true},
       {"binary.stl", binary_stl("binary", 0x8001), 6, 2, true},
+      {"all.glb", gltf_sample().glb(), 12, 6, true},
+      {"all.gltf", gltf_sample().gltf(), 12, 6, true},
       {"solid.stl", binary_stl("solid as some exporters write it", 0), 6, 2, true},
   };
 }

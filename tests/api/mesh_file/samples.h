@@ -17,6 +17,9 @@ struct Sample {
 /// 2 big endian.
 [[nodiscard]] std::string sample_ply(int encoding);
 
+/// A binary OFF of four vertices, a triangle and a quad, as Geomview writes it or without colours or little-endian.
+[[nodiscard]] std::string sample_off(bool big_endian, bool colors);
+
 [[nodiscard]] std::vector<Sample> samples();
 
 }  // namespace ramcdb::test
