@@ -111,8 +111,7 @@ WrittenRegion write_region(const Snapshot& snapshot, const RegionMesh& region, c
     Point q = lattice.position(p);
     for (int a = 0; a < 3; ++a) q[a] -= origin[a];
     if (gltf && !floats)
-      for (int a = 0; a < 3; ++a)
-        q[a] = static_cast<double>(static_cast<float>(q[a] - out.origin[a])) + out.origin[a];
+      for (int a = 0; a < 3; ++a) q[a] = static_cast<double>(static_cast<float>(q[a] - out.origin[a])) + out.origin[a];
     positions.push_back(q);
   }
   std::vector<std::uint64_t> ids;
