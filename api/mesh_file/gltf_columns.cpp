@@ -69,6 +69,7 @@ class Merge {
   }
 
   [[nodiscard]] std::size_t components() const { return components_; }
+  [[nodiscard]] bool is_mask() const { return one_type_ && type_ == NumberType::uint16 && components_ == 1; }
   [[nodiscard]] bool is_ids() const { return one_type_ && type_ == NumberType::uint16 && components_ == kIdWords; }
   /// Integers stay integers where all are of one type, and nothing forgets that they are normalized.
   [[nodiscard]] bool keeps_type(const Word& word) const {
@@ -138,6 +139,14 @@ void read_block(const Column& column, const Block& block, Index accessor, const 
   if (directs && !transform.keeps_directions()) turn(column, transform, block.count, to);
 }
 
+void apply_mask(Index accessor, const Block& block, std::size_t components, Accessors& accessors, double* to) {
+  std::vector<double> masks(block.count);
+  accessors.read(accessor, false, masks.data());
+  for (std::size_t i = 0; i < block.count; ++i)
+    for (std::size_t c = 0; c < components; ++c)
+      if (static_cast<unsigned>(masks[i]) >> c & 1U) to[i * components + c] = kNone;
+}
+
 void add_ids(const std::vector<double>& words, MeshData& mesh) {
   mesh.vertex_ids.resize(words.size() / kIdWords);
   for (std::size_t v = 0; v < mesh.vertex_ids.size(); ++v)
@@ -177,8 +186,11 @@ std::vector<Column> plan_columns(const Scene& scene, const Document& document) {
       vertices[name] += block.count;
     }
   std::vector<Column> columns;
+  const auto mask_of = [&](const std::string& name) { return merges.find(std::string(kMaskName) + name); };
   for (const auto& [name, merge] : merges) {
+    if (name.starts_with(kMaskName) && merge.is_mask() && merges.contains(name.substr(kMaskName.size()))) continue;
     columns.push_back(column_of(name, merge));
+    columns.back().mask = mask_of(name) != merges.end() && mask_of(name)->second.is_mask();
     // Ids that some vertices lack say nothing of the others.
     if (columns.back().kind == Column::Kind::id && vertices[name] != scene.vertices)
       columns.back().kind = Column::Kind::plain;
@@ -197,9 +209,13 @@ void read_column(const Column& column, const Scene& scene, const Document& docum
   const std::size_t n = column.info.components;
   std::vector<double> values(scene.vertices * n, kNone);
   for (const Block& block : scene.blocks)
-    if (const auto it = block.attributes.find(column.name); it != block.attributes.end())
-      read_block(column, block, it->second, document, scene.transforms[block.transform], accessors,
-                 values.data() + block.first * n);
+    if (const auto it = block.attributes.find(column.name); it != block.attributes.end()) {
+      double* to = values.data() + block.first * n;
+      read_block(column, block, it->second, document, scene.transforms[block.transform], accessors, to);
+      if (!column.mask) continue;
+      const auto mask = block.attributes.find(std::string(kMaskName) + column.name);
+      if (mask != block.attributes.end()) apply_mask(mask->second, block, n, accessors, to);
+    }
   if (column.kind == Column::Kind::id) return add_ids(values, mesh);
   Attribute attribute{column.info, std::move(values)};
   attribute.info.name = unique_name(mesh.attributes, AttributeOf::vertex, column.info.name);

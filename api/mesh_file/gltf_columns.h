@@ -18,6 +18,9 @@ namespace ramcdb::mesh_file::gltf {
 inline constexpr std::string_view kIdName = "_RAMCDB_ID";
 inline constexpr std::size_t kIdWords = 4;
 
+/// Before the name of an attribute: uint16, whose bit c says that component c is none. Without it, 0 would be a value.
+inline constexpr std::string_view kMaskName = "_RAMCDB_NONE_";
+
 /// Words that mean something to glTF or to a mesh that is read from it.
 [[nodiscard]] bool is_reserved(std::string_view name);
 /// The number of "TEXCOORD_2" or "texture_2" behind `base`; "texture" alone is 0 where `alone`. Nothing else is one.
@@ -29,6 +32,7 @@ struct Column {
   std::string name;  ///< in the file
   Kind kind = Kind::plain;
   bool unit = false;  ///< normalized integers become floats
+  bool mask = false;  ///< blocks may have one
   AttributeInfo info;
 };
 

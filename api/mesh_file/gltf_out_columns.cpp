@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "api/mesh_file/gltf_columns.h"
 #include "api/mesh_file/gltf_plan.h"
@@ -146,6 +147,19 @@ std::vector<const Attribute*> Columns::of_corners() const {
   return attributes;
 }
 
+void Columns::add_masks(const Vertices& vertices) {
+  for (std::size_t k = 0, columns = all_.size(); k < columns; ++k) {
+    if (!all_[k].attribute) continue;
+    OutColumn mask = all_[k];
+    mask.name = fmt::format("{}{}", kMaskName, mask.name);
+    mask.type = NumberType::uint16;
+    mask.bits = std::exchange(mask.components, 1);
+    mask.mask = true;
+    mask.normalized = false;
+    if (!has_none(mask, vertices, 0, vertices.count)) all_.push_back(std::move(mask));
+  }
+}
+
 bool has_none(const OutColumn& column, const Vertices& vertices, std::size_t first, std::size_t count) {
   if (!column.attribute) return false;
   for (std::size_t i = first; i < first + count; ++i)
@@ -156,7 +170,7 @@ bool has_none(const OutColumn& column, const Vertices& vertices, std::size_t fir
 
 void count_changes(const OutColumn& column, const Vertices& vertices, std::size_t first, std::size_t count,
                    DroppedCounter& dropped) {
-  if (!column.attribute) return;
+  if (!column.attribute || column.mask) return;
   std::uint64_t absent = 0, infinite = 0, rounded = 0;
   for (std::size_t i = first; i < first + count; ++i) {
     bool is_absent = false, is_infinite = false, is_rounded = false;
@@ -174,7 +188,7 @@ void count_changes(const OutColumn& column, const Vertices& vertices, std::size_
     rounded += is_rounded;
   }
   const std::string name = fmt::format("attribute '{}'", shown(column.attribute->info.name));
-  dropped.add(fmt::format("vertices without {} (written as 0)", name), absent);
+  dropped.add(fmt::format("vertices without {} (0 to other programs)", name), absent);
   dropped.add(fmt::format("values of {} that are not finite (written as 0)", name), infinite);
   dropped.add(fmt::format("values of {} that are no 32-bit floats (rounded)", name), rounded);
 }

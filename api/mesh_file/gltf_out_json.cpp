@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "api/mesh_file/gltf_columns.h"
 #include "api/mesh_file/gltf_plan.h"
 
 /// The JSON of glTF that is written: a node and a mesh per object, in it a primitive per material.
@@ -106,6 +107,7 @@ class Composer {
     for (std::size_t c = 0; c < columns.size(); ++c) {
       const OutColumn& column = columns[c];
       if (has_none(column, plan_.vertices, first, count)) continue;
+      if (column.mask && !attributes_.contains(column.name.substr(kMaskName.size()))) continue;
       count_changes(column, plan_.vertices, first, count, dropped_);
       attributes_[utf8(column.name)] =
           add_accessor(1 + c, column.stride() * first, column.type, count, column.components, column.normalized);

@@ -44,6 +44,7 @@ Plan::Plan(const std::filesystem::path& file, const MeshOutput& output, DroppedC
       vertices(split_vertices(output, columns.of_corners(), dropped)),
       groups(group_faces(output, vertices, columns.objects(), columns.materials(), dropped)) {
   for (const std::string& reference : output.references) drop_reference(dropped, reference);
+  columns.add_masks(vertices);
   length = 12 * vertices.count;
   for (const OutColumn& column : columns.all()) {
     offsets.push_back(length);

@@ -62,6 +62,8 @@ struct OutColumn {
   std::size_t components = 0;
   bool normalized = false;  ///< integers that stand for 0..1
   bool unit = false;        ///< floats 0..1 of an integer colour
+  bool mask = false;        ///< not the attribute's numbers but which of them are none, a bit each
+  std::size_t bits = 0;     ///< of a mask: components of the column that it is for
 
   [[nodiscard]] std::size_t stride() const { return (components * size_of(type) + 3) / 4 * 4; }
 };
@@ -75,6 +77,8 @@ class Columns {
   [[nodiscard]] const Attribute* objects() const { return objects_; }
   [[nodiscard]] const Attribute* materials() const { return materials_; }
   [[nodiscard]] std::vector<const Attribute*> of_corners() const;
+  /// Adds a mask for each column that some vertices have no value of: glTF has no number that says so.
+  void add_masks(const Vertices& vertices);
 
  private:
   void place(const Attribute& attribute);
@@ -89,9 +93,9 @@ class Columns {
   const Attribute *objects_ = nullptr, *materials_ = nullptr, *normal_ = nullptr;
 };
 
-/// The number of a column at a written vertex; NaN: there is none.
-[[nodiscard]] inline double number_at(const OutColumn& column, const Vertices& vertices, std::size_t i,
-                                      std::size_t component) {
+/// The number of an attribute's column at a written vertex; NaN: there is none.
+[[nodiscard]] inline double attribute_number(const OutColumn& column, const Vertices& vertices, std::size_t i,
+                                             std::size_t component) {
   const Attribute& attribute = *column.attribute;
   std::size_t at = vertices.vertex(i);
   if (attribute.info.of == AttributeOf::corner) {
@@ -100,6 +104,18 @@ class Columns {
   }
   const double value = attribute.values[at * attribute.info.components + component];
   return column.unit ? unit_color(value, attribute.info.type) : value;
+}
+
+/// The number of a column at a written vertex; NaN: there is none, of a mask: it says nothing.
+[[nodiscard]] inline double number_at(const OutColumn& column, const Vertices& vertices, std::size_t i,
+                                      std::size_t component) {
+  if (!column.mask) return attribute_number(column, vertices, i, component);
+  unsigned bits = 0;
+  for (std::size_t c = 0; c < column.bits; ++c) {
+    const double value = attribute_number(column, vertices, i, c);
+    bits |= static_cast<unsigned>(value != value) << c;
+  }
+  return bits ? static_cast<double>(bits) : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// A number that no float32 is, or that glTF has none for, is written as the nearest, or 0, and counted.

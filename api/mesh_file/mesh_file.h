@@ -83,14 +83,17 @@ struct MeshOutput {
 };
 
 /// Writes beside the file and renames into place, so that a failure leaves what was there. Text numbers are the
-/// shortest that read back as the same number of the scalar. STL is binary; PLY is binary
-/// little-endian unless `ascii`. Throws disk_full, storage, and invalid_argument for coordinates that are not finite or
-/// too large for the scalar (STL: for float32), faces that name no vertex, ids, colours or attributes that are not one
-/// each; then nothing was touched. Returns what the format could not hold, by name: PLY has all attributes of vertices
-/// and faces, without their `names`, and texture coordinates of corners; OBJ has colours of vertices, texture
-/// coordinates and normals, and of faces "material", "group", "object" and "smoothing"; OFF has colours, and of
-/// vertices normals and texture coordinates; STL has the attribute "attribute" (uint16) of faces. Integers that are NaN
-/// become 0 in PLY and STL.
+/// shortest that read back as the same number of the scalar. STL is binary; PLY is binary little-endian unless `ascii`;
+/// a .gltf has its buffer in it, as base64. Throws disk_full, storage, and invalid_argument for coordinates that are
+/// not finite or too large for the scalar (STL: for float32; glTF of float64: where no translation of all leaves
+/// float32s), faces that name no vertex, ids, colours or attributes that are not one each; then nothing was touched.
+/// Returns what the format could not hold, by name: PLY has all attributes of vertices and faces, without their
+/// `names`, and texture coordinates of corners; OBJ has colours of vertices, texture coordinates and normals, and of
+/// faces "material", "group", "object" and "smoothing"; OFF has colours, and of vertices normals and texture
+/// coordinates; STL has the attribute "attribute" (uint16) of faces; glTF has triangles, all attributes of vertices and
+/// corners that float32, or integers of 8 or 16 bits, hold, and of faces "material" and "object". It writes a vertex
+/// again for corners that differ, and puts faces in order of object and material. Integers that are NaN become 0 in PLY
+/// and STL, all numbers that are NaN in glTF, unless no vertex of an object has one.
 std::vector<Dropped> write_mesh(const std::filesystem::path& file, Format format, const MeshOutput& mesh,
                                 bool ascii = false);
 

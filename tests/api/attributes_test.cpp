@@ -73,7 +73,8 @@ void write(const MeshData& mesh, const fs::path& file) {
                                {},
                                {},
                                mesh.attributes,
-                               mesh.references});
+                               mesh.references,
+                               {}});
 }
 
 /// A fresh repository with the painted grid.
@@ -165,7 +166,7 @@ TEST(Attributes, AGeometryReadDoesNotTouchThem) {
 TEST(Attributes, AnUneditedFileIsNoEditInAnyFormat) {
   Painted repository(painted_grid(40));
   const Snapshot snapshot = repository->snapshot();
-  for (const char* name : {"a.ply", "a.obj", "a.off", "a.stl"}) {
+  for (const char* name : {"a.ply", "a.obj", "a.off", "a.stl", "a.glb", "a.gltf"}) {
     (void)repository->checkout_file(snapshot, snapshot.find({{InBox{{5, 5, -9}, {20, 20, 9}}}, 0}), repository / name,
                                     {});
     const ChangeReport change = repository->status_file(repository / name);

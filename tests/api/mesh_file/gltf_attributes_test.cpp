@@ -272,17 +272,42 @@ TEST(GltfAttributes, WhatCannotBeHeldIsLeftOutOrSaid) {
   const auto again = write_and_read("b.glb", output_of(mesh, Scalar::float32), false, &left_out);
   std::vector<std::string> said;
   for (const auto& d : left_out) said.push_back(fmt::format("{} {}", d.count, d.what));
-  EXPECT_THAT(said, testing::UnorderedElementsAre("4 vertex attribute 'large'", "4 vertex attribute 'inexact'",
-                                                  "4 vertex attribute 'five'", "2 face attribute 'group'",
-                                                  "2 face attribute 'smoothing'", "1 reference 'mtllib a.mtl'",
-                                                  "4 third number of attribute 'texture'",
-                                                  "1 values of attribute 'normal' that are no 32-bit floats (rounded)",
-                                                  "1 vertices without attribute 'texture' (written as 0)",
-                                                  "1 values of attribute 'infinite' that are not finite (written as 0)"));
+  EXPECT_THAT(said, testing::UnorderedElementsAre(
+                        "4 vertex attribute 'large'", "4 vertex attribute 'inexact'", "4 vertex attribute 'five'",
+                        "2 face attribute 'group'", "2 face attribute 'smoothing'", "1 reference 'mtllib a.mtl'",
+                        "4 third number of attribute 'texture'",
+                        "1 values of attribute 'normal' that are no 32-bit floats (rounded)",
+                        "1 vertices without attribute 'texture' (0 to other programs)",
+                        "1 values of attribute 'infinite' that are not finite (written as 0)"));
   EXPECT_EQ(find(again, "color").values[0], 1);
   EXPECT_THAT(find(again, "exact").values, ElementsAre(1 << 24, -5, 0, 1));
   EXPECT_EQ(find(again, "infinite").values[0], 0);
   EXPECT_EQ(again.attributes.size(), 5U);
+}
+
+TEST(GltfAttributes, NoneStaysNone) {
+  mesh_file::MeshData mesh = read(gltf_square());
+  mesh.attributes = {
+      attribute("color", AttributeOf::vertex, NumberType::uint8, 3, Meaning::color,
+                {1, 2, 3, kNone, kNone, kNone, 0, 0, 0, 4, 5, 6}),
+      attribute("q", AttributeOf::vertex, NumberType::float32, 4, Meaning::other,
+                {1, 2, 3, 4, 5, 6, kNone, 8, kNone, 0, 0, 0, 0, 0, 0, kNone}),
+  };
+  std::vector<mesh_file::Dropped> left_out;
+  auto again = write_and_read("b.glb", output_of(mesh, Scalar::float32), false, &left_out);
+  expect_same(again.attributes, mesh.attributes);
+  EXPECT_EQ(left_out.size(), 2U) << "other programs see 0";
+  // Corners without values, where others of the same vertex have some.
+  mesh.attributes = {attribute("texture", AttributeOf::corner, NumberType::float32, 2, Meaning::texture,
+                               {kNone, kNone, 1, 0, 1, 1, 0, 0, 1, 1, kNone, kNone})};
+  again = write_and_read("b.gltf", output_of(mesh, Scalar::float32), false, &left_out);
+  ASSERT_EQ(again.positions.size(), 5U);
+  const auto texture = find(again, "texture");
+  for (std::size_t c = 0; c < mesh.corners.size(); ++c)
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double written = mesh.attributes[0].values[2 * c + k], found = texture.values[2 * again.corners[c] + k];
+      EXPECT_TRUE(written == found || (std::isnan(written) && std::isnan(found))) << c;
+    }
 }
 
 TEST(GltfAttributes, NamesThatAreNoUtf8AreReplaced) {
