@@ -10,12 +10,10 @@ namespace ramcdb::codec {
 
 namespace {
 
-constexpr std::uint32_t kNone = LayerOrder::kNone;
-
 /// Pairs half-edges of faces that are no manifold surface.
 class Pairing {
  public:
-  explicit Pairing(const Chart& chart) : chart_(chart), twins_(3 * chart.faces.size(), kNone) {
+  explicit Pairing(const Chart& chart) : chart_(chart), twins_(3 * chart.faces.size(), LayerOrder::kNone) {
     std::vector<Edge> edges;
     for (std::uint32_t h = 0; h < twins_.size(); ++h) {
       const std::uint32_t from = origin(h), to = origin(LayerOrder::next(h));
@@ -45,9 +43,9 @@ class Pairing {
   void pair(std::span<const Edge> edges) {
     for (const bool mirrored : {false, true})
       for (std::size_t i = 0; i < edges.size(); ++i)
-        for (std::size_t j = i + 1; j < edges.size() && twins_[edges[i].half_edge] == kNone; ++j) {
+        for (std::size_t j = i + 1; j < edges.size() && twins_[edges[i].half_edge] == LayerOrder::kNone; ++j) {
           const std::uint32_t h = edges[i].half_edge, other = edges[j].half_edge;
-          if (twins_[other] != kNone || h / 3 == other / 3 || origin(h) == origin(other)) continue;
+          if (twins_[other] != LayerOrder::kNone || h / 3 == other / 3 || origin(h) == origin(other)) continue;
           if ((apex(h) == apex(other)) != mirrored) continue;
           twins_[h] = other;
           twins_[other] = h;

@@ -12,6 +12,8 @@
 namespace ramcdb::mesh_file {
 
 inline constexpr std::size_t kMostComponents = 16;
+/// The number of a value that there is none of.
+inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 [[nodiscard]] inline std::size_t size_of(NumberType type) {
   constexpr std::size_t kSizes[] = {0, 1, 1, 2, 2, 4, 4, 4, 8};

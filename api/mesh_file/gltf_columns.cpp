@@ -12,8 +12,6 @@
 namespace ramcdb::mesh_file::gltf {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
 /// What a name stands for in the file.
 struct Word {
   int order = 6;

@@ -13,8 +13,6 @@ namespace ramcdb::mesh_file {
 namespace gltf {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
 /// Instances and accessors without data make more of a file than it holds; this much is taken for meant.
 constexpr std::size_t kNumbersPerByte = 256, kNumbersAtLeast = 1 << 24;
 

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <limits>
 
+#include "api/mesh_file/attribute_names.h"
 #include "api/mesh_file/obj_tables.h"
 
 /// Wavefront OBJ. A corner is v, v/t, v//n or v/t/n, counted from 1, or from the newest backwards. Kept: positions and
@@ -144,8 +145,6 @@ class ObjReader {
     mesh_.attributes.push_back(std::move(attribute));
     return mesh_.attributes.back();
   }
-
-  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
   const FileBytes& file_;
   TextScanner scan_;

@@ -8,7 +8,6 @@
 namespace ramcdb::mesh_file {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMostByte = 255;
 
 bool is_whole(std::string_view word) { return word.find_first_not_of("0123456789+-") == word.npos; }

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "api/mesh_file/attribute_names.h"
 #include "api/mesh_file/ply_columns.h"
 #include "api/mesh_file/ply_values.h"
 
@@ -14,7 +15,6 @@ namespace {
 using namespace ply;
 using Kind = Target::Kind;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// Binary vertices are taken by so many bytes, property by property: they stay in the cache.
 constexpr std::size_t kBlockBytes = 1 << 14;
 
