@@ -65,10 +65,11 @@ FileBytes::FileBytes(const std::filesystem::path& file) : name_(file.string()) {
   if (mapped == MAP_FAILED)
     throw Error(Errc::storage, fmt::format("cannot read the file: {}", std::strerror(errno)), name_);
   data_ = static_cast<const char*>(mapped);
+  mapped_ = mapped != nullptr;
 }
 
 FileBytes::~FileBytes() {
-  if (data_) ::munmap(const_cast<char*>(data_), size_);
+  if (mapped_) ::munmap(const_cast<char*>(data_), size_);
 }
 
 std::string shown(std::string_view word) {

@@ -13,10 +13,13 @@ namespace ramcdb::mesh_file {
 
 using Progress = std::function<void(double)>;
 
-/// A file mapped for reading. It is read once, front to back.
+/// The bytes of a file, and what messages call it. They are read once, front to back.
 class FileBytes {
  public:
+  /// Maps a file for reading.
   explicit FileBytes(const std::filesystem::path& file);
+  /// Bytes that are in memory already and outlive this.
+  FileBytes(std::string_view bytes, std::string_view name) : name_(name), data_(bytes.data()), size_(bytes.size()) {}
   ~FileBytes();
   FileBytes(const FileBytes&) = delete;
   FileBytes& operator=(const FileBytes&) = delete;
@@ -28,6 +31,7 @@ class FileBytes {
   std::string name_;
   const char* data_ = nullptr;
   std::size_t size_ = 0;
+  bool mapped_ = false;
 };
 
 /// The error of a file that cannot be taken: WHAT (FILE:LINE or FILE, byte N): HOW TO GO ON.
