@@ -56,7 +56,8 @@ inline void end_face(MeshData& mesh, std::uint32_t corners) {
   mesh.face_sizes.push_back(corners);
 }
 
-/// Walks text line by line and word by word, without locale and without copying.
+/// Walks text line by line and word by word, without locale and without copying. Lines end with LF or CR LF, or with CR
+/// in a text without any LF.
 class TextScanner {
  public:
   /// From byte `offset`, before which so many lines stand; 0 steps over a UTF-8 byte order mark.
@@ -99,6 +100,7 @@ class TextScanner {
   [[nodiscard]] bool has_comment(std::string_view piece) const;
 
   const FileBytes& file_;
+  char line_end_;
   std::size_t at_ = 0;
   std::size_t line_ = 0;
   std::string_view rest_;
