@@ -31,6 +31,8 @@ const char* behind_plus(std::string_view text) {
   return text.data() + (plus ? 1 : 0);
 }
 
+bool has_digit(std::string_view text) { return text.find_first_of("0123456789") != text.npos; }
+
 /// The nearest float; infinite only where the text says so.
 template <class Float>
 Float parse_float(const TextScanner& scan, std::string_view text) {
@@ -38,8 +40,7 @@ Float parse_float(const TextScanner& scan, std::string_view text) {
   Float value = 0;
   const auto [end, error] = fast_float::from_chars(behind_plus(text), text.data() + text.size(), value);
   if (end != text.data() + text.size()) throw scan.bad(fmt::format("a value is no number: '{}'", shown(text)));
-  const bool digits = text.find_first_of("0123456789") != text.npos;
-  if (digits && !std::isfinite(value))
+  if (!std::isfinite(value) && has_digit(text))
     throw scan.bad(fmt::format("a value is too large for its type: '{}'", shown(text)));
   if (error != std::errc() && error != std::errc::result_out_of_range)
     throw scan.bad(fmt::format("a value is no number: '{}'", shown(text)));
@@ -65,10 +66,11 @@ FileBytes::FileBytes(const std::filesystem::path& file) : name_(file.string()) {
   if (mapped == MAP_FAILED)
     throw Error(Errc::storage, fmt::format("cannot read the file: {}", std::strerror(errno)), name_);
   data_ = static_cast<const char*>(mapped);
+  mapped_ = mapped != nullptr;
 }
 
 FileBytes::~FileBytes() {
-  if (data_) ::munmap(const_cast<char*>(data_), size_);
+  if (mapped_) ::munmap(const_cast<char*>(data_), size_);
 }
 
 std::string shown(std::string_view word) {
@@ -91,7 +93,11 @@ Error bad_byte(const FileBytes& file, std::size_t offset, std::string_view what)
 }
 
 TextScanner::TextScanner(const FileBytes& file, std::size_t offset, std::size_t lines_before, const Progress& progress)
-    : file_(file), at_(offset), line_(lines_before), progress_(progress) {
+    : file_(file),
+      line_end_(file.text().find('\n') == std::string_view::npos ? '\r' : '\n'),
+      at_(offset),
+      line_(lines_before),
+      progress_(progress) {
   if (at_ == 0 && file.text().substr(0, kByteOrderMark.size()) == kByteOrderMark) at_ = kByteOrderMark.size();
 }
 
@@ -100,7 +106,7 @@ bool TextScanner::next_line(bool continued) {
   if (at_ >= text.size()) return false;
   joined_.clear();
   while (true) {
-    const std::size_t end = std::min(text.find('\n', at_), text.size());
+    const std::size_t end = std::min(text.find(line_end_, at_), text.size());
     std::string_view piece = text.substr(at_, end - at_);
     at_ = std::min(end + 1, text.size());
     ++line_;
@@ -160,8 +166,10 @@ double TextScanner::parse_number(std::string_view text, std::string_view what) c
   if (text.empty()) throw bad(fmt::format("{} is missing", what));
   double value = 0;
   const auto [end, error] = fast_float::from_chars(behind_plus(text), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size())
-    throw bad(fmt::format("{} is no number: '{}'", what, shown(text)));
+  const bool all = end == text.data() + text.size();
+  if (all && !std::isfinite(value) && has_digit(text))
+    throw bad(fmt::format("{} is too large: '{}'", what, shown(text)));
+  if (error != std::errc() || !all) throw bad(fmt::format("{} is no number: '{}'", what, shown(text)));
   if (!std::isfinite(value)) throw bad(fmt::format("{} is not finite: '{}'", what, shown(text)));
   return value;
 }

@@ -13,10 +13,13 @@ namespace ramcdb::mesh_file {
 
 using Progress = std::function<void(double)>;
 
-/// A file mapped for reading. It is read once, front to back.
+/// The bytes of a file, and what messages call it. They are read once, front to back.
 class FileBytes {
  public:
+  /// Maps a file for reading.
   explicit FileBytes(const std::filesystem::path& file);
+  /// Bytes that are in memory already and outlive this.
+  FileBytes(std::string_view bytes, std::string_view name) : name_(name), data_(bytes.data()), size_(bytes.size()) {}
   ~FileBytes();
   FileBytes(const FileBytes&) = delete;
   FileBytes& operator=(const FileBytes&) = delete;
@@ -28,6 +31,7 @@ class FileBytes {
   std::string name_;
   const char* data_ = nullptr;
   std::size_t size_ = 0;
+  bool mapped_ = false;
 };
 
 /// The error of a file that cannot be taken: WHAT (FILE:LINE or FILE, byte N): HOW TO GO ON.
@@ -55,7 +59,8 @@ inline void end_face(MeshData& mesh, std::uint32_t corners) {
   mesh.face_sizes.push_back(corners);
 }
 
-/// Walks text line by line and word by word, without locale and without copying.
+/// Walks text line by line and word by word, without locale and without copying. Lines end with LF or CR LF, or with CR
+/// in a text without any LF.
 class TextScanner {
  public:
   /// From byte `offset`, before which so many lines stand; 0 steps over a UTF-8 byte order mark.
@@ -98,6 +103,7 @@ class TextScanner {
   [[nodiscard]] bool has_comment(std::string_view piece) const;
 
   const FileBytes& file_;
+  char line_end_;
   std::size_t at_ = 0;
   std::size_t line_ = 0;
   std::string_view rest_;

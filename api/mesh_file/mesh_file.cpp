@@ -32,25 +32,7 @@ void check(const FileBytes& file, const MeshData& mesh) {
                 "repair the file; nothing was imported");
 }
 
-}  // namespace
-
-Format format_of(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  for (char& c : extension)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  if (extension == ".ply") return Format::ply;
-  if (extension == ".obj") return Format::obj;
-  if (extension == ".off") return Format::off;
-  if (extension == ".stl") return Format::stl;
-  if (extension == ".gltf") return Format::gltf;
-  if (extension == ".glb") return Format::glb;
-  throw Error(Errc::invalid_argument, fmt::format("unknown mesh format '{}'", extension), file.string(),
-              "use .ply, .obj, .off, .stl, .glb or .gltf");
-}
-
-MeshData read_mesh(const std::filesystem::path& path, const std::function<void(double)>& progress) {
-  const Format format = format_of(path);
-  const FileBytes file(path);
+MeshData read(const FileBytes& file, Format format, const Progress& progress) {
   MeshData mesh;
   switch (format) {
     case Format::ply:
@@ -72,6 +54,31 @@ MeshData read_mesh(const std::filesystem::path& path, const std::function<void(d
   }
   check(file, mesh);
   return mesh;
+}
+
+}  // namespace
+
+Format format_of(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  for (char& c : extension)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  if (extension == ".ply") return Format::ply;
+  if (extension == ".obj") return Format::obj;
+  if (extension == ".off") return Format::off;
+  if (extension == ".stl") return Format::stl;
+  if (extension == ".gltf") return Format::gltf;
+  if (extension == ".glb") return Format::glb;
+  throw Error(Errc::invalid_argument, fmt::format("unknown mesh format '{}'", extension), file.string(),
+              "use .ply, .obj, .off, .stl, .glb or .gltf");
+}
+
+MeshData read_mesh(const std::filesystem::path& path, const Progress& progress) {
+  const Format format = format_of(path);
+  return read(FileBytes(path), format, progress);
+}
+
+MeshData read_mesh_bytes(std::string_view bytes, Format format, std::string_view name, const Progress& progress) {
+  return read(FileBytes(bytes, name), format, progress);
 }
 
 }  // namespace ramcdb::mesh_file

@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ramcdb/attributes.h"
@@ -49,6 +50,10 @@ struct MeshData {
 /// not_found, and invalid_argument with the place for a file that is cut off, names vertices that do not exist, holds
 /// coordinates that are not finite, or no vertex at all.
 [[nodiscard]] MeshData read_mesh(const std::filesystem::path& file, const std::function<void(double)>& progress = {});
+
+/// The same for the bytes of a file that are in memory already; `name` is what messages call it.
+[[nodiscard]] MeshData read_mesh_bytes(std::string_view bytes, Format format, std::string_view name,
+                                       const std::function<void(double)>& progress = {});
 
 /// Makes vertices at equal positions one (-0 equals 0); of their ids and attributes the first's stay.
 void weld_exact(MeshData& mesh);

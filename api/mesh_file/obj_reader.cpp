@@ -51,8 +51,11 @@ class ObjReader {
     for (std::string_view word; !(word = scan_.word()).empty(); ++extra)
       if (extra < kColor) words[extra] = word;
     if (extra == kColor) return add_color(words);
-    if (extra > kColor) dropped_.add("vertex colours");
-    if (extra == 1 || extra == 4) dropped_.add("vertex weights");
+    if (extra == kColor + 1) dropped_.add("vertex colours");
+    if (extra == 1 || extra == kColor + 1)
+      dropped_.add("vertex weights");
+    else if (extra)
+      dropped_.add("further numbers behind coordinates");
   }
 
   void add_color(const std::string_view (&words)[3]) {
@@ -77,7 +80,10 @@ class ObjReader {
     const std::size_t corner = mesh_.corners.size() - 1, slash = words.find('/');
     if (const auto texture = words.substr(0, slash); !texture.empty()) textures_.read_index(scan_, texture, corner);
     if (slash == words.npos) return;
-    if (const auto normal = words.substr(slash + 1); !normal.empty()) normals_.read_index(scan_, normal, corner);
+    const auto normal = words.substr(slash + 1);
+    if (normal.find('/') != normal.npos)
+      throw scan_.bad(fmt::format("a corner has more than three indices: it ends with '/{}'", shown(words)));
+    if (!normal.empty()) normals_.read_index(scan_, normal, corner);
   }
 
   std::uint32_t index(std::string_view word) {

@@ -15,13 +15,14 @@ void CornerTable::read_line(TextScanner& scan) {
   std::size_t n = 0;
   for (std::string_view word; n < most_ && !(word = scan.word()).empty(); ++n)
     numbers[n] = scan.parse_value(word, NumberType::float64);
-  if (n < least_) throw scan.bad(fmt::format("{} with {} numbers", what_, n));
+  if (n < least_) throw scan.bad(fmt::format("{} with {} numbers, not {}", what_, n, least_));
+  further_ += !scan.word().empty();
   components_ = std::max(components_, n);
   values_.insert(values_.end(), numbers, numbers + 3);
 }
 
 void CornerTable::read_index(const TextScanner& scan, std::string_view word, std::size_t corner) {
-  const std::int64_t i = scan.parse_integer(word, what_);
+  const std::int64_t i = scan.parse_integer(word, index_);
   const std::int64_t index = i < 0 ? static_cast<std::int64_t>(count()) + i : i - 1;
   if (index < 0 || index >= kNone) {
     ++wrong_;
@@ -71,6 +72,7 @@ std::vector<double> CornerTable::gather(const std::vector<std::uint32_t>& indice
 void CornerTable::hand_over(std::string_view name, Meaning meaning, MeshData& mesh, DroppedCounter& dropped) {
   if (values_.empty() && indices_.empty() && !wrong_) return;
   check_indices(mesh.corners.size(), dropped);
+  dropped.add(fmt::format("further numbers of {}", what_), further_);
   if (std::all_of(indices_.begin(), indices_.end(), [](std::uint32_t index) { return index == kNone; })) return;
   const auto of_vertex = per_vertex(mesh);
   Attribute attribute;

@@ -17,9 +17,13 @@ class CornerTable {
  public:
   /// Lines of `least` to `most` (at most 3) numbers; `what` names them in messages, such as "normals (vn)".
   CornerTable(std::string_view what, std::size_t least, std::size_t most)
-      : what_(what), least_(least), most_(most), components_(most == 3 && least == 3 ? 3 : 2) {}
+      : what_(what),
+        index_(what_ + ": an index"),
+        least_(least),
+        most_(most),
+        components_(most == 3 && least == 3 ? 3 : 2) {}
 
-  /// Reads what is left of such a line. Numbers that are missing are 0.
+  /// Reads what is left of such a line. Numbers that are missing are 0; lines with more are counted.
   void read_line(TextScanner& scan);
   /// The word of the corner at this position of MeshData::corners, in their order; corners may be left out.
   void read_index(const TextScanner& scan, std::string_view word, std::size_t corner);
@@ -38,11 +42,12 @@ class CornerTable {
   [[nodiscard]] std::vector<std::uint32_t> per_vertex(const MeshData& mesh) const;
   [[nodiscard]] std::vector<double> gather(const std::vector<std::uint32_t>& indices) const;
 
-  std::string what_;
+  std::string what_, index_;  ///< in messages
   std::size_t least_, most_, components_;
   std::vector<double> values_;          ///< three each
   std::vector<std::uint32_t> indices_;  ///< per corner, as far as there are any
   std::uint64_t wrong_ = 0;             ///< corners with an index that cannot be
+  std::uint64_t further_ = 0;           ///< lines with more numbers
 };
 
 /// A number that holds for all faces behind it.

@@ -15,6 +15,8 @@ struct Layout {
   bool texture = false, color = false, normal = false;
 };
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
 Layout parse_keyword(const TextScanner& scan, std::string_view keyword) {
   Layout layout;
   std::string_view prefix = keyword.substr(0, keyword.size() - 3);
@@ -51,9 +53,13 @@ class OffReader {
           throw scan_.bad("binary OFF with colours, normals or texture coordinates of vertices is not read");
         return read_binary_off(file_, scan_.offset(), mesh_);
       }
+    } else if (first.starts_with("OFF") && is_digit(first[3])) {
+      first.remove_prefix(3);  // "OFF490 518 0", as a well-known data set has it
+    } else if (!first.empty() && !is_digit(first[0]) && first[0] != '-' && first[0] != '+') {
+      throw scan_.bad(fmt::format("this is not OFF: it begins with '{}'", shown(first)));
     }
-    const std::size_t vertices = count(scan_.parse_integer(first, "the number of vertices"), 6);
-    const std::size_t faces = count(scan_.integer_anywhere("the number of faces"), 2);
+    const std::size_t vertices = count(scan_.parse_integer(first, "the number of vertices"), 6, "vertices");
+    const std::size_t faces = count(scan_.integer_anywhere("the number of faces"), 2, "faces");
     (void)scan_.word();  // the number of edges, which nobody needs and some leave out
     mesh_.positions.reserve(vertices);
     for (std::size_t v = 0; v < vertices; ++v) read_vertex(layout, v);
@@ -65,9 +71,10 @@ class OffReader {
 
  private:
   /// A count that the file is long enough for: so many bytes each, at least.
-  std::size_t count(std::int64_t n, std::size_t bytes_each) const {
-    if (n < 0 || static_cast<std::uint64_t>(n) > size_ / bytes_each + 1)
-      throw scan_.bad(fmt::format("the file is too short for {} of what it announces", n));
+  std::size_t count(std::int64_t n, std::size_t bytes_each, std::string_view what) const {
+    if (n < 0) throw scan_.bad(fmt::format("the number of {} is negative: {}", what, n));
+    if (static_cast<std::uint64_t>(n) > size_ / bytes_each + 1)
+      throw scan_.bad(fmt::format("the file is too short for {} {}", n, what));
     return static_cast<std::size_t>(n);
   }
 

@@ -133,11 +133,12 @@ class HeaderReader {
   }
 
   void check_counts() const {
-    std::size_t left = file_.text().size() - header_.size;
+    const bool ascii = header_.encoding == Encoding::ascii;
+    // The last number of a text file needs no blank behind it.
+    std::size_t left = file_.text().size() - header_.size + ascii;
     for (const Element& e : header_.elements) {
-      const std::size_t each = e.least_bytes(header_.encoding == Encoding::ascii);
-      // The last number of a text file needs no blank behind it.
-      if (each && e.count > (left + 1) / each)
+      const std::size_t each = e.least_bytes(ascii);
+      if (each && e.count > left / each)
         throw bad_byte(file_, header_.size,
                        fmt::format("the file is cut off: no room for {} of '{}'", e.count, shown(e.name)));
       left -= std::min<std::size_t>(left, e.count * each);

@@ -158,7 +158,8 @@ class BodyReader {
   std::uint32_t read_corners(const Property& p) {
     const std::uint64_t corners = values_.whole(*p.count_type);
     if (corners < 3) values_.refuse(fmt::format("a face has {} corners", corners));
-    if (corners > values_.left_for(p.type) || corners > 0xffffffffU) values_.refuse("the file is cut off");
+    if (corners > values_.left_for(p.type) || corners > 0xffffffffU)
+      values_.refuse(fmt::format("the file is cut off: no room for the {} corners of a face", corners));
     const auto size = static_cast<std::uint32_t>(corners);
     if constexpr (Values::kBinary)
       if (values_.indices(p.type, size, vertices_, mesh_.corners)) return size;
@@ -173,7 +174,8 @@ class BodyReader {
   /// The list may stand before the corners that it belongs to.
   void read_texcoord(const Property& p) {
     const std::uint64_t count = values_.whole(*p.count_type);
-    if (count > values_.left_for(p.type)) values_.refuse("the file is cut off");
+    if (count > values_.left_for(p.type))
+      values_.refuse(fmt::format("the file is cut off: no room for the {} numbers of a list 'texcoord'", count));
     texcoord_.resize(count);
     values_.values(p.type, texcoord_);
   }

@@ -7,8 +7,9 @@
 #include "api/mesh_file/file_bytes.h"
 
 /// STL, a soup of triangles. Binary: 80 bytes of anything, u32 count, then 50 bytes a triangle, little-endian: normal,
-/// three corners, u16 attribute. Which of the two kinds a file is, its length tells, not the word "solid". Text: words
-/// in any case, a line each, and an "endsolid" without which the file is cut off.
+/// three corners, u16 attribute. Which of the two kinds a file is, its length tells, and where that is not what the
+/// count says, the count's last byte, a NUL that no text has; not the word "solid". Text: words in any case, a line
+/// each, and an "endsolid" without which the file is cut off.
 namespace ramcdb::mesh_file {
 namespace {
 
@@ -82,6 +83,7 @@ void read_binary(const FileBytes& file, MeshData& mesh, const Progress& progress
 void read_ascii(const FileBytes& file, MeshData& mesh, const Progress& progress) {
   TextScanner scan(file, 0, 0, progress);
   std::size_t corners = 0;
+  DroppedCounter dropped;
   bool in_solid = false, in_facet = false, any = false;
   while (scan.next_line()) {
     const std::string keyword = lower(scan.word());
@@ -90,12 +92,15 @@ void read_ascii(const FileBytes& file, MeshData& mesh, const Progress& progress)
       in_facet = any = true;
       corners = 0;
     } else if (keyword == "vertex") {
-      if (!in_facet || ++corners > 3) throw scan.bad("a vertex that belongs to no triangle");
+      if (!in_facet) throw scan.bad("a vertex stands outside a facet");
+      if (++corners > 3) throw scan.bad("a facet has more than three vertices");
       Point p;
       for (int a = 0; a < 3; ++a) p[a] = scan.number("a coordinate");
       add_corner(mesh, p);
+      if (!scan.word().empty()) dropped.add("further words behind coordinates");
     } else if (keyword == "endfacet") {
-      if (!in_facet || corners != 3) throw scan.bad(fmt::format("a facet has {} vertices", corners));
+      if (!in_facet) throw scan.bad("an 'endfacet' without a facet");
+      if (corners != 3) throw scan.bad(fmt::format("a facet has {} vertices", corners));
       in_facet = false;
     } else if (keyword == "solid" || keyword == "endsolid") {
       in_solid = keyword == "solid";
@@ -103,15 +108,17 @@ void read_ascii(const FileBytes& file, MeshData& mesh, const Progress& progress)
       throw scan.bad(fmt::format("'{}' is not STL", shown(keyword)));
     }
   }
-  if (in_facet || in_solid) throw scan.bad("the file is cut off: no 'endsolid'");
+  if (in_facet) throw scan.bad("the file is cut off: no 'endfacet'");
+  if (in_solid) throw scan.bad("the file is cut off: no 'endsolid'");
   if (!any) throw scan.bad("the file holds no facet");
+  mesh.dropped = dropped.take();
 }
 
 }  // namespace
 
 void read_stl(const FileBytes& file, MeshData& mesh, const Progress& progress) {
   const std::string_view text = file.text();
-  const bool begins_solid = begins_as_text(text);
+  const bool begins_solid = begins_as_text(text) && (text.size() < kHeader || text[kHeader - 1] != '\0');
   const bool fits_binary =
       text.size() >= kHeader && kHeader + kRecord * std::uint64_t{load<std::uint32_t>(text.data() + 80)} == text.size();
   if (!fits_binary && !begins_solid && text.size() < kHeader)

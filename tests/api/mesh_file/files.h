@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "api/mesh_file/mesh_file.h"
+#include "tests/api/mesh_file/sound_mesh.h"
 
 /// Small files for the tests of readers and writers.
 namespace ramcdb::test {
@@ -38,9 +39,6 @@ void write_bytes(const std::filesystem::path& file, std::string_view bytes);
 
 /// How often `what` was dropped; 0 when it is not named.
 [[nodiscard]] std::uint64_t dropped(const mesh_file::MeshData& mesh, std::string_view what);
-
-/// Corners in range, sizes that add up, coordinates finite: what every mesh that a reader returns must be.
-[[nodiscard]] bool is_sound(const mesh_file::MeshData& mesh);
 
 /// The bit patterns of all coordinates, so that -0 differs from 0.
 [[nodiscard]] std::vector<std::uint64_t> bits(const std::vector<Point>& positions);

@@ -237,7 +237,7 @@ TEST(Ply, WhatIsRefused) {
       {"index_fraction.ply:13", "whole number", triangle(faces, "3 0 1 1.5\n")},
       {"nan.ply:8", "not finite", ascii(fmt::format("element vertex 1\n{}", kXyz), "nan 0 0\n")},
       {"inf.ply:8", "not finite", ascii(fmt::format("element vertex 1\n{}", kXyz), "0 -inf 0\n")},
-      {"huge.ply:8", "not finite", ascii(fmt::format("element vertex 1\n{}", kXyz), "0 0 1e999\n")},
+      {"huge.ply:8", "too large", ascii(fmt::format("element vertex 1\n{}", kXyz), "0 0 1e999\n")},
       {"word.ply:8", "no number: 'zero'", ascii(fmt::format("element vertex 1\n{}", kXyz), "0 zero 0\n")},
       {"binary_nan.ply", "vertex 0", one_vertex(std::numeric_limits<float>::quiet_NaN())},
       {"binary_inf.ply", "vertex 0", one_vertex(-infinity)},

@@ -107,7 +107,7 @@ TEST(Stl, WhatIsRefused) {
       {"solid", "no 'endsolid'"},
       {"solid\nendsolid\n", "no facet"},
       {start + kFacet, "cut off"},
-      {start + "vertex 0 0 0\n", "no triangle"},
+      {start + "vertex 0 0 0\n", "outside a facet"},
       {start + "facet\nendfacet\n", "0 vertices"},
       {start + "facet\nvertex 0 0 0\nvertex 0 0 1\nendfacet\n", "2 vertices"},
       {start + "facet\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 0 0\n", "a.stl:6)"},
