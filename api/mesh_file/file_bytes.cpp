@@ -190,7 +190,7 @@ double TextScanner::parse_value(std::string_view text, NumberType type) const {
   const auto [end, error] = std::from_chars(behind_plus(text), text.data() + text.size(), whole);
   const bool written_whole = error == std::errc() && end == text.data() + text.size() && !text.empty();
   // Some write 255.0 where an integer is to stand.
-  const double value = written_whole ? static_cast<double>(whole) : parse_float<double>(*this, text);
+  const double value = (written_whole ? static_cast<double>(whole) : parse_float<double>(*this, text)) + 0.0;  // no -0
   if (std::isnan(value) || !range_of(type).holds(value))
     throw bad(fmt::format("'{}' is no number of the type of its property", shown(text)));
   return value;

@@ -44,6 +44,7 @@ void OffColors::set(const TextScanner& scan, std::size_t i, std::span<const std:
       return;
     }
     kind = *most > 1 ? Kind::whole : Kind::whole_up_to_1;
+    for (double& value : row) value += 0.0;  // no whole number is -0
   }
   any_fraction_ |= kind == Kind::fraction;
   any_alpha_ |= words.size() == kRow;

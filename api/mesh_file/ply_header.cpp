@@ -111,6 +111,8 @@ class HeaderReader {
     p.type_name = first;
     p.name = scan_.word();
     if (p.name.empty()) throw scan_.bad("a property has no name");
+    if (std::any_of(p.name.begin(), p.name.end(), [](char c) { return c >= 0 && c < ' '; }))
+      throw scan_.bad(fmt::format("the name of a property holds a control character: '{}'", shown(p.name)));
     p.role = role_of(element, p);
     if (p.role != Role::none && element.has(p.role))
       throw scan_.bad(fmt::format("property '{}' stands twice", shown(p.name)));

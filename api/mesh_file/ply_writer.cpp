@@ -115,8 +115,7 @@ class PlyWriter {
       : out_(out), mesh_(mesh), ascii_(ascii), dropped_(dropped), body_(out, ascii) {
     if (!mesh.face_colors.empty())
       for (const char* name : {"red", "green", "blue"}) face_names_.unique(name);
-    if (!mesh.vertex_ids.empty())
-      for (const char* name : kIdHalves) vertex_names_.unique(name);
+    for (const char* name : kIdHalves) vertex_names_.unique(name);  // no attribute is to pass for ids
     for (const Attribute& attribute : mesh.attributes) place(attribute);
     std::uint32_t most = 3;
     for (const std::uint32_t size : mesh.face_sizes) most = std::max(most, size);

@@ -118,6 +118,8 @@ std::vector<BadFile> headers() {
        "unknown type 'fl\\xc3\\xb6t' (a.ply:4)"},
       {"list-of-list", kAscii + kVertices + list("uchar list uchar int") + kEnd, "unknown type 'list' (a.ply:8)"},
       {"name-missing", kAscii + "element vertex 1\nproperty float\n" + kEnd, "a property has no name (a.ply:4)"},
+      {"name-control", kAscii + "element vertex 1\nproperty uint ramcdb_id\x1fhi\n" + kEnd,
+       "the name of a property holds a control character: 'ramcdb_id\\x1fhi' (a.ply:4)"},
       {"property-first", kAscii + "property float x\n" + kVertices + kEnd,
        "a property stands before any element (a.ply:3)"},
       {"strips",
