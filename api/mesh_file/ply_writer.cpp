@@ -38,8 +38,12 @@ class PropertyNames {
 struct Column {
   std::string name;
   NumberType type = NumberType::float32;
-  const double* values = nullptr;
-  std::size_t stride = 1;
+  const Attribute* attribute = nullptr;
+  std::size_t component = 0;
+
+  [[nodiscard]] double value(std::size_t i) const {
+    return attribute->values[i * attribute->info.components + component];
+  }
 };
 
 /// Texture coordinates of corners: a list that stands before this column of faces.
@@ -152,8 +156,7 @@ class PlyWriter {
     const auto fields = info.fields.empty() ? customary_fields(info) : info.fields;
     for (std::size_t c = 0; c < info.components; ++c)
       (of_face ? face_columns_ : vertex_columns_)
-          .push_back({(of_face ? face_names_ : vertex_names_).unique(fields[c]), info.type, attribute.values.data() + c,
-                      info.components});
+          .push_back({(of_face ? face_names_ : vertex_names_).unique(fields[c]), info.type, &attribute, c});
     drop_names(dropped_, attribute);
     if (is_float(info.type)) return;
     const auto missing =
@@ -201,7 +204,7 @@ class PlyWriter {
       body_.put_whole(static_cast<std::uint32_t>(mesh_.vertex_ids[v] >> 32), NumberType::uint32);
       body_.put_whole(static_cast<std::uint32_t>(mesh_.vertex_ids[v]), NumberType::uint32);
     }
-    for (const Column& column : vertex_columns_) body_.put(column.values[v * column.stride], column.type);
+    for (const Column& column : vertex_columns_) body_.put(column.value(v), column.type);
     body_.end_line();
   }
 
@@ -216,7 +219,7 @@ class PlyWriter {
       if (texcoord_.at(i)) write_texcoord(begin, end);
       if (i == face_columns_.size()) break;
       const Column& column = face_columns_[i];
-      body_.put(column.values[f * column.stride], column.type);
+      body_.put(column.value(f), column.type);
     }
     body_.end_line();
   }

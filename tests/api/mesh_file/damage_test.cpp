@@ -96,6 +96,12 @@ void expect_written_as_gltf(const mesh_file::MeshData& mesh, const std::filesyst
 }
 
 /// What is read of damaged files can be written in every format, and comes back the same.
+/// Half of the ids is an attribute like others, but is written under another name, so that it cannot become ids.
+std::vector<Attribute> unreserved(std::vector<Attribute> attributes) {
+  std::erase_if(attributes, [](const Attribute& a) { return a.info.name.starts_with("ramcdb_id_"); });
+  return attributes;
+}
+
 TEST(Damaged, WhatIsReadIsWritten) {
   const ScratchFolder scratch;
   for (const Sample& sample : samples())
@@ -112,7 +118,7 @@ TEST(Damaged, WhatIsReadIsWritten) {
           ASSERT_EQ(bits(again.positions), bits(mesh.positions)) << sample.name << ' ' << at << ' ' << name;
           ASSERT_EQ(again.corners, mesh.corners) << sample.name << ' ' << at << ' ' << name;
           if (mesh_file::format_of(sample.name) == mesh_file::format_of(name))
-            expect_same(again.attributes, mesh.attributes);
+            expect_same(unreserved(again.attributes), unreserved(mesh.attributes));
         }
         expect_written_as_gltf(mesh, scratch.file(sample.name + ".glb"));
       } catch (const Error& error) {
