@@ -166,7 +166,7 @@ void Accessors::read(Index index, bool unit, double* to) {
 
 void Accessors::read_points(Index index, Point* to) {
   static_assert(sizeof(Point) == 3 * sizeof(double));
-  read(index, true, &to->x);
+  read(index, true, reinterpret_cast<double*>(to));  // null where there are none
 }
 
 std::vector<std::uint32_t> Accessors::indices(Index index, std::size_t vertices, std::string_view where) {
