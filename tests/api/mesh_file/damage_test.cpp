@@ -59,8 +59,9 @@ TEST_P(Damage, EveryByteChanged) {
   const Sample& sample = GetParam();
   std::vector<unsigned char> changes{0x01, 0x80, 0xff};
   for (const char c : {'\n', ' ', '9', '-', 'e', '\\', '#', '\0'}) changes.push_back(static_cast<unsigned char>(c));
+  const std::size_t every = sample.bytes.size() > 2000 ? 4 : 1;  // of large files a quarter of the changes per byte
   for (std::size_t at = 0; at < sample.bytes.size(); ++at)
-    for (std::size_t i = 0; i < changes.size(); ++i) {
+    for (std::size_t i = at % every; i < changes.size(); i += every) {
       std::string bytes = sample.bytes;
       const auto was = static_cast<unsigned char>(bytes[at]);
       bytes[at] = static_cast<char>(i < 3 ? was ^ changes[i] : changes[i]);
