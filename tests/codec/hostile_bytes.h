@@ -8,7 +8,7 @@
 
 #include "ramcdb/bytes.h"
 #include "ramcdb/error.h"
-#include "tests/codec/memory_watch.h"
+#include "tests/support/memory_watch.h"
 
 /// What every decoder must survive.
 namespace ramcdb::codec::testing {
@@ -36,7 +36,7 @@ template <class Decode>
 bool refuses(const Decode& decode, Bytes bytes) {
   const auto exact = std::make_unique<std::uint8_t[]>(bytes.size());
   std::copy(bytes.begin(), bytes.end(), exact.get());
-  const MemoryWatch watch;
+  const test::MemoryWatch watch;
   bool refused = false;
   try {
     decode(Bytes(exact.get(), bytes.size()));

@@ -1,4 +1,4 @@
-#include "tests/codec/memory_watch.h"
+#include "tests/support/memory_watch.h"
 
 #include <malloc.h>
 
@@ -8,12 +8,14 @@
 
 namespace {
 
-std::atomic<std::size_t> held_now{0}, held_most{0};
+std::atomic<std::size_t> held_now{0}, held_most{0}, taken_ever{0};
 
 void* take(std::size_t size) noexcept {
   void* p = std::malloc(size);
   if (p == nullptr) return nullptr;
-  const std::size_t now = held_now += malloc_usable_size(p);
+  const std::size_t size_taken = malloc_usable_size(p);
+  const std::size_t now = held_now += size_taken;
+  taken_ever += size_taken;
   if (now > held_most) held_most = now;
   return p;
 }
@@ -42,10 +44,12 @@ void operator delete[](void* p, std::size_t) noexcept { give_back(p); }
 void operator delete(void* p, const std::nothrow_t&) noexcept { give_back(p); }
 void operator delete[](void* p, const std::nothrow_t&) noexcept { give_back(p); }
 
-namespace ramcdb::codec::testing {
+namespace ramcdb::test {
 
-MemoryWatch::MemoryWatch() : held_(held_now) { held_most = held_; }
+MemoryWatch::MemoryWatch() : held_(held_now), taken_(taken_ever) { held_most = held_; }
 
 std::size_t MemoryWatch::peak() const { return held_most - held_; }
 
-}  // namespace ramcdb::codec::testing
+std::size_t MemoryWatch::taken() const { return taken_ever - taken_; }
+
+}  // namespace ramcdb::test
