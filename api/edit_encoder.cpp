@@ -260,10 +260,11 @@ class ChartRecoder {
   }
 
   static bool put(codec::LayerValues& values, const Layer& layer, std::size_t at, const CodedValue& value) {
-    if (value.absent && values.absent.empty()) values.absent.resize(values.numbers.size() / layer.info.components);
+    const std::size_t numbers = layer.shape().components;
+    if (value.absent && values.absent.empty()) values.absent.resize(values.numbers.size() / numbers);
     if (!values.absent.empty()) values.absent[at] = value.absent;
     std::copy(value.numbers.begin(), value.numbers.end(),
-              values.numbers.begin() + static_cast<std::ptrdiff_t>(at * layer.info.components));
+              values.numbers.begin() + static_cast<std::ptrdiff_t>(at * numbers));
     return true;
   }
 

@@ -9,7 +9,7 @@ namespace {
 
 CodedValue coded(const Layer& layer, const Attribute& attribute, std::size_t at) {
   CodedValue value;
-  value.numbers.resize(layer.info.components);
+  value.numbers.resize(layer.shape().components);
   value.absent = !to_numbers(
       layer, std::span(attribute.values).subspan(at * layer.info.components, layer.info.components), value.numbers);
   return value;

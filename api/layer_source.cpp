@@ -67,14 +67,14 @@ LayerSource::Places LayerSource::places_in_file(const chartify::NetChart& chart,
 }
 
 codec::LayerValues LayerSource::values(const Layer& layer, const Attribute& attribute, const Places& places) const {
-  const std::size_t components = layer.info.components;
+  const std::size_t components = layer.info.components, numbers = layer.shape().components;
   const auto& source = places.of(layer.info.of);
   codec::LayerValues values;
-  values.numbers.resize(source.size() * components);
+  values.numbers.resize(source.size() * numbers);
   values.absent.resize(source.size());
   for (std::size_t i = 0; i < source.size(); ++i)
     values.absent[i] = !to_numbers(layer, std::span(attribute.values).subspan(source[i] * components, components),
-                                   std::span(values.numbers).subspan(i * components, components));
+                                   std::span(values.numbers).subspan(i * numbers, numbers));
   return values;
 }
 

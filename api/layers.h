@@ -18,6 +18,7 @@ enum class LayerCoding : std::uint8_t {
   float_bits = 2,  ///< a float's bits, so ordered that they count upwards with the number: lossless
   grid = 3,        ///< round(number / step)
   polygons = 4,    ///< no attribute: which triangles are one polygon
+  direction = 5,   ///< three floats of length 1, or three zeros, as a point of the octahedron (codec/octahedron.h)
 };
 
 /// One layer of a mesh: an attribute, or its polygons. Charts have a blob each.
@@ -28,8 +29,8 @@ struct Layer {
   double step = 0;  ///< of a grid
 
   [[nodiscard]] codec::LayerShape shape() const;
-  /// The largest error that coding makes; 0 where it makes none.
-  [[nodiscard]] double max_error() const { return coding == LayerCoding::grid ? step / 2 : 0; }
+  /// The largest error that coding makes in a number; 0 where it makes none.
+  [[nodiscard]] double max_error() const;
   friend bool operator==(const Layer&, const Layer&) = default;
 };
 
@@ -49,14 +50,15 @@ struct LayerTable {
 /// Throws corrupt, naming `where`.
 [[nodiscard]] LayerTable decode_layer_table(Bytes blob, std::string_view where);
 
-/// The layer that an attribute is stored as: floats that programs compute with (colours, normals, texture coordinates)
-/// on a grid, unless `lossless` or the grid cannot hold them; all else without loss.
+/// The layer that an attribute is stored as, unless `lossless` or it cannot hold the numbers: normals of length 1 as
+/// directions; other floats that programs compute with (colours, normals, texture coordinates) on a grid; all else
+/// without loss.
 [[nodiscard]] Layer layer_for(const Attribute& attribute, std::uint16_t id, bool lossless);
 
-/// One value of an attribute as a layer codes it: `numbers` gets info.components of them. False when it is absent.
+/// One value of an attribute as a layer codes it: `numbers` gets shape().components of them. False when it is absent.
 /// Numbers that the layer cannot hold (not whole, out of range) throw invalid_argument naming the attribute.
 [[nodiscard]] bool to_numbers(const Layer& layer, std::span<const double> value, std::span<std::uint64_t> numbers);
-/// The way back; `value` gets info.components numbers.
+/// The way back: from shape().components numbers to info.components ones.
 void from_numbers(const Layer& layer, std::span<const std::uint64_t> numbers, std::span<double> value);
 
 }  // namespace ramcdb::detail

@@ -95,7 +95,8 @@ class ValueJoiner {
  private:
   void add(const Layer& layer, const codec::LayerValues& values, const std::vector<std::uint32_t>& vertex,
            std::vector<double>& to) {
-    const std::size_t components = layer.info.components, count = values.numbers.size() / components;
+    const std::size_t components = layer.info.components, numbers = layer.shape().components;
+    const std::size_t count = values.numbers.size() / numbers;
     const bool of_vertices = layer.info.of == AttributeOf::vertex;
     const std::size_t first = to.size();
     to.resize(of_vertices ? region_.points.size() * components : first + count * components);
@@ -105,7 +106,7 @@ class ValueJoiner {
       if (!values.absent.empty() && values.absent[i])
         std::fill(value.begin(), value.end(), std::numeric_limits<double>::quiet_NaN());
       else
-        from_numbers(layer, std::span(values.numbers).subspan(i * components, components), value);
+        from_numbers(layer, std::span(values.numbers).subspan(i * numbers, numbers), value);
     }
   }
 

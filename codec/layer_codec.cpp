@@ -41,7 +41,13 @@ void from_differences(LayerValues& values, const LayerShape& shape, const Ring& 
   }
 }
 
-bool has_differences(const LayerShape& shape) { return shape.is_color && shape.components >= 3; }
+bool has_differences(const LayerShape& shape) { return shape.kind == ValueKind::color && shape.components >= 3; }
+
+bool are_directions(const LayerValues& values, const Ring& ring) {
+  for (std::size_t i = 0; i + 2 <= values.numbers.size(); i += 2)
+    if (!is_octahedron_point(direction_of(values.numbers[i], values.numbers[i + 1], ring))) return false;
+  return true;
+}
 
 /// Absent values count as 0 everywhere.
 void clear_absent(LayerValues& values, const LayerShape& shape) {
@@ -78,13 +84,17 @@ std::uint32_t check_of(const LayerValues& values, const LayerShape& shape, const
 
 void require_values(const LayerValues& values, const LayerShape& shape, const Chart& chart) {
   const std::size_t count = value_count(chart, shape.of);
-  if (shape.components < 1 || shape.components > 16 || shape.bits < 1 || shape.bits > 64)
+  const bool is_direction = shape.kind == ValueKind::direction;
+  if (shape.components < 1 || shape.components > 16 || shape.bits < 1 || shape.bits > 64 ||
+      (is_direction && (shape.components != 2 || shape.bits != kDirectionBits)))
     throw Error(Errc::invalid_argument, "a layer has a shape that cannot be coded");
   if (values.numbers.size() != count * shape.components || (!values.absent.empty() && values.absent.size() != count))
     throw Error(Errc::invalid_argument, "a layer has another number of values than its chart");
   const Ring ring(shape.bits);
   if (!std::all_of(values.numbers.begin(), values.numbers.end(), [&](std::uint64_t n) { return ring.wrap(n) == n; }))
     throw Error(Errc::invalid_argument, "a layer has numbers that are wider than it says");
+  if (is_direction && !are_directions(values, ring))
+    throw Error(Errc::invalid_argument, "a layer has directions that are none");
 }
 
 }  // namespace

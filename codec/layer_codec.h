@@ -11,12 +11,20 @@
 
 namespace ramcdb::codec {
 
+/// What the numbers of a value mean together, as far as it helps coding.
+enum class ValueKind : std::uint8_t {
+  numbers,
+  color,      ///< components 0, 1, 2 are red, green, blue: coded as green and two differences
+  direction,  ///< two components of kDirectionBits bits: an OctahedronPoint, signed
+};
+inline constexpr std::uint8_t kDirectionBits = 16;
+
 /// How the values of a layer are laid out. Part of what a decoder has to know beforehand; not in the blob.
 struct LayerShape {
   AttributeOf of = AttributeOf::vertex;
   std::uint8_t components = 1;  ///< 1..16
   std::uint8_t bits = 32;       ///< 1..64: every number is below 2^bits; predictions wrap around there
-  bool is_color = false;        ///< components 0, 1, 2 are red, green, blue: coded as green and two differences
+  ValueKind kind = ValueKind::numbers;
 
   friend bool operator==(const LayerShape&, const LayerShape&) = default;
 };
@@ -35,8 +43,8 @@ struct LayerValues {
 
 /// Codes a layer of a chart. Depends on the chart's connectivity and border, not on positions: codes made before
 /// vertices moved are good afterwards, as long as `LayerOrder` visits the same vertices and faces. Decoded again and
-/// compared before it is returned. Throws invalid_argument for counts that are not the chart's and numbers of 2^bits
-/// or more.
+/// compared before it is returned. Throws invalid_argument for counts that are not the chart's, numbers of 2^bits or
+/// more and directions that are no points of the octahedron.
 [[nodiscard]] Buffer encode_layer(const LayerValues& values, const LayerShape& shape, const Chart& chart,
                                   const LayerOrder& order);
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "codec/octahedron.h"
 #include "codec/range_coder.h"
 
 /// Numbers of a layer's component: arithmetic modulo 2^bits, prediction, and the models of what prediction misses.
@@ -29,6 +30,11 @@ class Ring {
 
 [[nodiscard]] inline std::uint64_t magnitude(std::int64_t x) {
   return x < 0 ? std::uint64_t{0} - static_cast<std::uint64_t>(x) : static_cast<std::uint64_t>(x);
+}
+
+/// A direction from the two numbers that stand for it.
+[[nodiscard]] inline OctahedronPoint direction_of(std::uint64_t u, std::uint64_t v, const Ring& ring) {
+  return {static_cast<std::int32_t>(ring.difference(u, 0)), static_cast<std::int32_t>(ring.difference(v, 0))};
 }
 
 /// A miss, a signed number of up to 64 bits: the bit width of its magnitude in unary, its sign, the second and third

@@ -7,6 +7,7 @@
 
 #include "codec/layer_codec.h"
 #include "codec/layer_numbers.h"
+#include "ramcdb/error.h"
 
 namespace ramcdb::codec {
 
@@ -17,10 +18,10 @@ namespace ramcdb::codec {
 ///     where
 ///                                        something is predicted to be equal (corners and faces)
 ///
-/// A vertex is predicted per component by the mean of its neighbours, by the parallelogram over the edge that its face
-/// was entered through, or by the vertex at the begin of that edge, whichever missed least lately. A corner is likely
-/// to have the value that the neighbouring face has there, a face that of the face it was entered from; where they
-/// differ (a seam, another material), they are predicted by what the face has already.
+/// A vertex is predicted per component (directions as vectors) by the mean of its neighbours, by the parallelogram over
+/// the edge that its face was entered through, or by the vertex at the begin of that edge, whichever missed least
+/// lately. A corner is likely to have the value that the neighbouring face has there, a face that of the face it was
+/// entered from; where they differ (a seam, another material), they are predicted by what the face has already.
 template <class Coder>
 class LayerWalk {
  public:
@@ -33,6 +34,7 @@ class LayerWalk {
         order_(order),
         ring_(shape.bits),
         some_absent_(some_absent),
+        is_direction_(shape.kind == ValueKind::direction),
         components_(shape.components),
         known_(value_count(chart, shape.of), false) {}
 
@@ -81,19 +83,53 @@ class LayerWalk {
     const bool has_parallelogram = corner == LayerOrder::prev(entry) && across != kNone && across != v && is_there(a) &&
                                    is_there(b) && is_there(across);
     if (!begin_value(v, 0)) return;
+    if (is_direction_)
+      code_direction_between(v, a, b, has_parallelogram ? across : kNone);
+    else
+      code_numbers_between(v, a, b, has_parallelogram ? across : kNone);
+    end_value(v);
+  }
+
+  /// A vertex among its neighbours; `across` is what the parallelogram over a and b begins at, if there is one.
+  void code_numbers_between(std::uint32_t v, std::uint32_t a, std::uint32_t b, std::uint32_t across) {
     for (std::size_t k = 0; k < components_; ++k) {
       const std::uint64_t first = number(neighbours_[0], k);
       std::array<std::uint64_t, kPredictors> guesses;
       guesses[kMean] = ring_.wrap(first + static_cast<std::uint64_t>(mean_difference(first, k)));
       guesses[kParallelogram] =
-          has_parallelogram ? ring_.wrap(number(a, k) + number(b, k) - number(across, k)) : guesses[kMean];
+          across != kNone ? ring_.wrap(number(a, k) + number(b, k) - number(across, k)) : guesses[kMean];
       guesses[kBegin] = first;
       Component& model = components_models_[k];
       const std::uint64_t guess = guesses[model.best.best()];
       const std::uint64_t coded = code_number(v, k, guess, spread(guess, k));
       for (std::size_t p = 0; p < kPredictors; ++p) model.best.learn(p, magnitude(ring_.difference(coded, guesses[p])));
     }
-    end_value(v);
+  }
+
+  void code_direction_between(std::uint32_t v, std::uint32_t a, std::uint32_t b, std::uint32_t across) {
+    std::array<OctahedronPoint, kPredictors> guesses;
+    OctahedronVector sum;
+    for (const std::uint32_t n : neighbours_) sum = sum + octahedron_vector(direction(n));
+    guesses[kMean] = octahedron_point(sum);
+    guesses[kParallelogram] = across != kNone ? parallelogram(a, b, across) : guesses[kMean];
+    guesses[kBegin] = direction(neighbours_[0]);
+    BestOf<kPredictors>& best = components_models_[0].best;
+    const OctahedronPoint guess = guesses[best.best()];
+    std::array<std::uint64_t, 2> spread{};
+    for (const std::uint32_t n : neighbours_) {
+      const auto away = distance(guess, direction(n));
+      for (std::size_t k = 0; k < 2; ++k) spread[k] = std::max(spread[k], away[k]);
+    }
+    code_direction(v, guess, spread);
+    for (std::size_t p = 0; p < kPredictors; ++p) {
+      const auto missed = distance(guesses[p], direction(v));
+      best.learn(p, missed[0] + missed[1]);
+    }
+  }
+
+  [[nodiscard]] OctahedronPoint parallelogram(std::uint32_t a, std::uint32_t b, std::uint32_t across) const {
+    return octahedron_point(octahedron_vector(direction(a)) + octahedron_vector(direction(b)) -
+                            octahedron_vector(direction(across)));
   }
 
   /// The known, present neighbours of the vertex at a corner, from the edge that its face was entered through on.
@@ -138,11 +174,19 @@ class LayerWalk {
   /// A value without neighbours, from one other, or from 0.
   void code_alone(std::uint32_t v, std::uint32_t from) {
     if (!begin_value(v, 1)) return;
-    for (std::size_t k = 0; k < components_; ++k) {
-      const std::uint64_t guess = from != kNone && here(from) ? number(from, k) : last_number(k);
-      (void)code_number(v, k, guess, components_models_[k].fading / 16);
-    }
+    code_from(v, from);
     end_value(v);
+  }
+
+  /// From one other value, if it is there, else from the last one, or 0.
+  void code_from(std::uint32_t at, std::uint32_t from) {
+    if (from == kNone || !here(from)) from = last_;
+    if (is_direction_) {
+      const OctahedronPoint guess = from == kNone ? OctahedronPoint{} : direction(from);
+      return code_direction(at, guess, {components_models_[0].fading / 16, components_models_[1].fading / 16});
+    }
+    for (std::size_t k = 0; k < components_; ++k)
+      (void)code_number(at, k, from == kNone ? 0 : number(from, k), components_models_[k].fading / 16);
   }
 
   // ---- corners ----
@@ -183,18 +227,28 @@ class LayerWalk {
       return true;
     }
     if (!begin_value(corner, 2)) return false;
-    for (std::size_t k = 0; k < components_; ++k) {
-      std::uint64_t guess = near != kNone && here(near) ? number(near, k) : last_number(k);
-      std::uint64_t activity = components_models_[k].fading / 16;
-      if (across_ != kNone && here(across_) && here(LayerOrder::next(across_)) && here(LayerOrder::prev(across_))) {
-        const std::uint64_t a = number(LayerOrder::next(across_), k), b = number(across_, k);
-        guess = ring_.wrap(a + b - number(LayerOrder::prev(across_), k));
-        activity = (activity + magnitude(ring_.difference(a, b))) / 2;
-      }
-      (void)code_number(corner, k, guess, activity);
-    }
+    if (across_ != kNone && here(across_) && here(LayerOrder::next(across_)) && here(LayerOrder::prev(across_)))
+      code_across(corner);
+    else
+      code_from(corner, near);
     end_value(corner);
     return false;
+  }
+
+  /// An apex from the face behind its entry.
+  void code_across(std::uint32_t corner) {
+    const std::uint32_t a = LayerOrder::next(across_), b = across_, far = LayerOrder::prev(across_);
+    if (is_direction_) {
+      const OctahedronPoint guess = parallelogram(a, b, far);
+      std::array<std::uint64_t, 2> activity = distance(direction(b), direction(a));
+      for (std::size_t k = 0; k < 2; ++k) activity[k] = (components_models_[k].fading / 16 + activity[k]) / 2;
+      return code_direction(corner, guess, activity);
+    }
+    for (std::size_t k = 0; k < components_; ++k) {
+      const std::uint64_t along = magnitude(ring_.difference(number(a, k), number(b, k)));
+      (void)code_number(corner, k, ring_.wrap(number(a, k) + number(b, k) - number(far, k)),
+                        (components_models_[k].fading / 16 + along) / 2);
+    }
   }
 
   // ---- faces ----
@@ -229,7 +283,18 @@ class LayerWalk {
   [[nodiscard]] bool is_there(std::uint32_t at) const { return known_[at] && here(at); }
   /// Of a known value.
   [[nodiscard]] bool here(std::uint32_t at) const { return !some_absent_ || !values_.absent[at]; }
-  [[nodiscard]] std::uint64_t last_number(std::size_t k) const { return last_ == kNone ? 0 : number(last_, k); }
+  [[nodiscard]] OctahedronPoint direction(std::uint32_t at) const {
+    return direction_of(number(at, 0), number(at, 1), ring_);
+  }
+  void set_direction(std::uint32_t at, OctahedronPoint p) {
+    number(at, 0) = ring_.wrap(static_cast<std::uint64_t>(std::int64_t{p.u}));
+    number(at, 1) = ring_.wrap(static_cast<std::uint64_t>(std::int64_t{p.v}));
+  }
+  /// How far a direction is from a guess, as it is coded.
+  [[nodiscard]] static std::array<std::uint64_t, 2> distance(OctahedronPoint guess, OctahedronPoint p) {
+    const OctahedronPoint from = seen_from(guess, guess), to = seen_from(guess, p);
+    return {magnitude(std::int64_t{to.u} - from.u), magnitude(std::int64_t{to.v} - from.v)};
+  }
 
   [[nodiscard]] bool equal(std::uint32_t x, std::uint32_t y) const {
     if (here(x) != here(y)) return false;
@@ -271,6 +336,16 @@ class LayerWalk {
     return number(at, k);
   }
 
+  void code_direction(std::uint32_t at, OctahedronPoint guess, const std::array<std::uint64_t, 2>& activity) {
+    if (Coder::kEncodes) set_direction(at, seen_from(guess, direction(at)));
+    const OctahedronPoint from = seen_from(guess, guess);
+    (void)code_number(at, 0, ring_.wrap(static_cast<std::uint64_t>(std::int64_t{from.u})), activity[0]);
+    (void)code_number(at, 1, ring_.wrap(static_cast<std::uint64_t>(std::int64_t{from.v})), activity[1]);
+    const OctahedronPoint coded = direction(at);
+    if (!in_octahedron_square(coded)) throw Error(Errc::corrupt, "a layer blob has a direction that is none");
+    set_direction(at, without_twins(seen_from(guess, coded)));
+  }
+
   static constexpr std::size_t kMostNeighbours = 64;
 
   Coder& coder_;
@@ -279,7 +354,7 @@ class LayerWalk {
   const Chart& chart_;
   const LayerOrder& order_;
   Ring ring_;
-  bool some_absent_;
+  bool some_absent_, is_direction_;
   std::size_t components_;
   std::vector<bool> known_;
   std::array<Component, 16> components_models_;

@@ -92,7 +92,7 @@ TEST(FormatExample, DenseChart) {
 }
 
 TEST(FormatExample, Layer) {
-  const LayerShape shape{AttributeOf::vertex, 1, 8, false};
+  const LayerShape shape{AttributeOf::vertex, 1, 8};
   const LayerValues values{{10, 20, 30, 40, 25}, {}};
   const LayerOrder order(tent());
   const Buffer blob = encode_layer(values, shape, tent(), order);

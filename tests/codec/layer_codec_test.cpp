@@ -66,7 +66,7 @@ TEST(Layer, ComesBackOnEveryChart) {
       for (int again = 0; again < 3; ++again, ++round) {
         const auto [components, bits] = kSizes[round % 5];
         const LayerShape shape{of, static_cast<std::uint8_t>(components), static_cast<std::uint8_t>(bits),
-                               components == 3};
+                               components == 3 ? ValueKind::color : ValueKind::numbers};
         const LayerValues values = sample(chart, shape, static_cast<unsigned>(bits) / 2, kAbsent[round % 3], round);
         const Buffer blob = encode_layer(values, shape, chart, order);
         ASSERT_TRUE(decode_layer(blob, shape, chart, order) == values) << name << ' ' << components << ' ' << bits;
@@ -79,7 +79,7 @@ TEST(Layer, ExtremeNumbersComeBack) {
   const Chart chart = testing::cut(testing::terrain(9, 30, 1));
   const LayerOrder order(chart);
   for (unsigned bits = 1; bits <= 64; ++bits) {
-    const LayerShape shape{AttributeOf::vertex, 1, static_cast<std::uint8_t>(bits), false};
+    const LayerShape shape{AttributeOf::vertex, 1, static_cast<std::uint8_t>(bits)};
     LayerValues values;
     for (std::size_t v = 0; v < chart.positions.size(); ++v)
       values.numbers.push_back(v % 3 == 0 ? mask(bits) : v % 3 == 1 ? 0 : mask(bits) / 2 + 1);
@@ -98,7 +98,7 @@ TEST(Layer, MovedVerticesLeaveTheBytesAlone) {
       for (int a = 0; a < 3; ++a) moved.positions[v][a] += static_cast<std::int32_t>(random() % 400);
     const EncodedChart after = encode_chart(moved, Profile::dense, {}, range);
     ASSERT_NE(after.decoded.faces, before.faces) << "the walk should differ, or this shows nothing";
-    const LayerShape shape{AttributeOf::vertex, 1, 32, false};
+    const LayerShape shape{AttributeOf::vertex, 1, 32};
     LayerValues values = sample(before, shape, 5, 0, 1), same = values;
     for (std::size_t v = 0; v < after.source_vertex.size(); ++v)
       same.numbers[v] = values.numbers[after.source_vertex[v]];
@@ -115,25 +115,25 @@ TEST(Layer, SmoothAndEqualValuesAreCheap) {
   const Chart chart = testing::cut(testing::terrain(60, 3, 1));
   const std::size_t vertices = chart.positions.size();
   LayerValues equal{std::vector<std::uint64_t>(3 * vertices, 77), {}};
-  EXPECT_LT(bits_of(equal, {AttributeOf::vertex, 3, 8, true}, chart), vertices / 5);
+  EXPECT_LT(bits_of(equal, {AttributeOf::vertex, 3, 8, ValueKind::color}, chart), vertices / 5);
   // Linear in the plane: the neighbours' mean says it all.
-  const LayerShape plane{AttributeOf::vertex, 1, 32, false};
+  const LayerShape plane{AttributeOf::vertex, 1, 32};
   EXPECT_LT(bits_of(sample(chart, plane, 0, 0, 1), plane, chart), 6 * vertices);
   // Texture coordinates per corner without a seam cost as much as per vertex and a little more.
-  const LayerShape corners{AttributeOf::corner, 2, 20, false}, smooth{AttributeOf::vertex, 2, 20, false};
+  const LayerShape corners{AttributeOf::corner, 2, 20}, smooth{AttributeOf::vertex, 2, 20};
   EXPECT_LT(bits_of(sample(chart, corners, 0, 0, 1), corners, chart),
             bits_of(sample(chart, smooth, 0, 0, 1), smooth, chart) + 3 * vertices);
   // Two materials, half and half.
   LayerValues halves;
   for (const Triangle& face : chart.faces) halves.numbers.push_back(chart.positions[face[0]].x > 0);
-  EXPECT_LT(bits_of(halves, {AttributeOf::face, 1, 32, false}, chart), chart.faces.size() / 3);
+  EXPECT_LT(bits_of(halves, {AttributeOf::face, 1, 32}, chart), chart.faces.size() / 3);
 }
 
 TEST(Layer, RefusesEveryPrefixAndEveryFlippedBit) {
   const Chart chart = testing::cut(testing::torus(9, 6, 900));
   const LayerOrder order(chart);
   for (const AttributeOf of : kKinds) {
-    const LayerShape shape{of, 3, 12, true};
+    const LayerShape shape{of, 3, 12, ValueKind::color};
     const LayerValues values = sample(chart, shape, 3, 20, 1);
     const Buffer blob = encode_layer(values, shape, chart, order);
     for (std::size_t size = 0; size < blob.size(); ++size)
@@ -160,17 +160,17 @@ TEST(Layer, RandomBytesDecodeToNothing) {
     Buffer blob{1, static_cast<std::uint8_t>(random() % 2)};
     for (std::size_t i = 0, size = random() % 300; i < size; ++i) blob.push_back(static_cast<std::uint8_t>(random()));
     for (const AttributeOf of : kKinds)
-      EXPECT_TRUE(refuses([&](Bytes b) { (void)decode_layer(b, {of, 2, 64, false}, chart, order); }, blob));
+      EXPECT_TRUE(refuses([&](Bytes b) { (void)decode_layer(b, {of, 2, 64}, chart, order); }, blob));
   }
 }
 
 TEST(Layer, RefusesValuesThatAreNotTheCharts) {
   const Chart chart = testing::one_triangle();
   const LayerOrder order(chart);
-  EXPECT_THROW((void)encode_layer({{1, 2}, {}}, {AttributeOf::vertex, 1, 8, false}, chart, order), Error);
-  EXPECT_THROW((void)encode_layer({{1, 2, 256}, {}}, {AttributeOf::vertex, 1, 8, false}, chart, order), Error);
-  EXPECT_THROW((void)encode_layer({{1, 2, 3}, {true}}, {AttributeOf::vertex, 1, 8, false}, chart, order), Error);
-  EXPECT_THROW((void)encode_layer({{1, 2, 3}, {}}, {AttributeOf::vertex, 1, 65, false}, chart, order), Error);
+  EXPECT_THROW((void)encode_layer({{1, 2}, {}}, {AttributeOf::vertex, 1, 8}, chart, order), Error);
+  EXPECT_THROW((void)encode_layer({{1, 2, 256}, {}}, {AttributeOf::vertex, 1, 8}, chart, order), Error);
+  EXPECT_THROW((void)encode_layer({{1, 2, 3}, {true}}, {AttributeOf::vertex, 1, 8}, chart, order), Error);
+  EXPECT_THROW((void)encode_layer({{1, 2, 3}, {}}, {AttributeOf::vertex, 1, 65}, chart, order), Error);
 }
 
 TEST(LayerOrder, VisitsEverythingOnce) {

@@ -10,20 +10,26 @@ codec::LayerShape shape(CoderInput& input) {
   shape.of = static_cast<AttributeOf>(1 + input.byte() % 3);
   shape.components = static_cast<std::uint8_t>(1 + input.byte() % 16);
   shape.bits = static_cast<std::uint8_t>(1 + input.byte() % 64);
-  shape.is_color = input.byte() % 2 && shape.components >= 3;
+  const std::uint8_t kind = input.byte() % 3;
+  if (kind == 1 && shape.components >= 3) shape.kind = codec::ValueKind::color;
+  if (kind == 2) shape = {shape.of, 2, codec::kDirectionBits, codec::ValueKind::direction};
   return shape;
 }
 
-Seed seed_of(std::size_t number, AttributeOf of, std::uint8_t components, std::uint8_t bits, bool absent) {
+std::uint64_t number_of(std::size_t i, unsigned k, const codec::LayerShape& shape) {
+  if (shape.kind == codec::ValueKind::direction) return (i * i * 77 + k * i) % codec::kOctahedronUnit;
+  return (i * i * 77 + k * i) & (~std::uint64_t{0} >> (64 - shape.bits));
+}
+
+Seed seed_of(std::size_t number, const codec::LayerShape& shape, bool absent) {
   const Chart& chart = chart_of(static_cast<std::uint8_t>(number));
-  const codec::LayerShape shape{of, components, bits, components == 3};
+  const auto [of, components, bits, kind] = shape;
   codec::LayerValues values;
   const std::size_t count = codec::value_count(chart, of);
   for (std::size_t i = 0; i < count; ++i) {
     const bool is_absent = absent && i % 3 == 1;
     if (absent) values.absent.push_back(is_absent);
-    for (unsigned k = 0; k < components; ++k)
-      values.numbers.push_back(is_absent ? 0 : (i * i * 77 + k * i) & (~std::uint64_t{0} >> (64 - bits)));
+    for (unsigned k = 0; k < components; ++k) values.numbers.push_back(is_absent ? 0 : number_of(i, k, shape));
   }
   if (absent && count < 2) values.absent.clear();
   return CoderSeed()
@@ -31,7 +37,7 @@ Seed seed_of(std::size_t number, AttributeOf of, std::uint8_t components, std::u
       .byte(static_cast<std::size_t>(of) - 1)
       .byte(components - 1U)
       .byte(bits - 1U)
-      .byte(shape.is_color)
+      .byte(static_cast<std::size_t>(kind))
       .named("layer-" + std::to_string(number) + "-" + std::to_string(components) + "-" + std::to_string(bits),
              codec::encode_layer(values, shape, chart, codec::LayerOrder(chart)));
 }
@@ -46,9 +52,11 @@ const codec::LayerOrder& order_of(const Chart& chart) {
 std::vector<Seed> seeds() {
   std::vector<Seed> all;
   for (std::size_t number = 0; number < charts().size(); ++number) {
-    all.push_back(seed_of(number, AttributeOf::vertex, 3, 8, false));
-    all.push_back(seed_of(number, AttributeOf::corner, 2, 32, true));
-    all.push_back(seed_of(number, AttributeOf::face, 1, 64, number % 2 == 0));
+    using codec::ValueKind;
+    all.push_back(seed_of(number, {AttributeOf::vertex, 3, 8, ValueKind::color}, false));
+    all.push_back(seed_of(number, {AttributeOf::corner, 2, 32, ValueKind::numbers}, true));
+    all.push_back(seed_of(number, {AttributeOf::face, 1, 64, ValueKind::numbers}, number % 2 == 0));
+    all.push_back(seed_of(number, {AttributeOf::corner, 2, codec::kDirectionBits, ValueKind::direction}, true));
   }
   return all;
 }
