@@ -12,7 +12,7 @@ namespace ramcdb::codec {
 
 namespace {
 
-constexpr std::uint8_t kOwnBox = 1;
+constexpr std::uint8_t kOwnBox = 1, kAligned = 2;
 
 void put_box(Buffer& out, const LatticeBox& box) {
   for (int a = 0; a < 3; ++a) {
@@ -39,7 +39,7 @@ LatticeBox take_box(ByteReader& reader) {
 void put_fields(Buffer& out, const ChartHeader& header) {
   out.push_back(kChartFormat);
   out.push_back(static_cast<std::uint8_t>(header.coding));
-  out.push_back(header.own_box ? kOwnBox : 0);
+  out.push_back(static_cast<std::uint8_t>((header.own_box ? kOwnBox : 0) | (header.aligned ? kAligned : 0)));
   put_varint(out, header.counts.inner_vertices);
   put_varint(out, header.counts.faces);
   if (header.own_box) put_box(out, header.box);
@@ -97,8 +97,10 @@ ChartHeader take_chart_header(ByteReader& reader, const LatticeBox& range) {
     reader.fail("is coded in no known way");
   header.coding = static_cast<ChartCoding>(coding);
   const std::uint8_t flags = reader.byte();
-  if (flags > kOwnBox) reader.fail("has unknown flags");
-  header.own_box = flags == kOwnBox;
+  header.own_box = flags & kOwnBox;
+  header.aligned = flags & kAligned;
+  if (flags > (kOwnBox | kAligned) || (header.aligned && header.coding != ChartCoding::dense))
+    reader.fail("has unknown flags");
   header.counts.inner_vertices = reader.varint_up_to(kMaxChartVertices);
   header.counts.faces = reader.varint_up_to(kMaxChartFaces);
   header.box = header.own_box ? take_box(reader) : range;

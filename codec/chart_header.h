@@ -9,7 +9,7 @@ namespace ramcdb::codec {
 /// A chart blob begins with
 ///
 ///   header  = format:1 coding:1 flags:1 inner_vertices:varint faces:varint [box] [edge_exponent:1] check:4
-///   box     = 3 x (low: signed varint, high - low: varint)     when flags has kOwnBox
+///   box     = 3 x (low: signed varint, high - low: varint)     if flags has 1
 ///   edge_exponent                                              when coding is dense
 ///
 /// and goes on with what the coder wrote. Format and coding are never 0. check: the lower half of XXH3-64 over the rest
@@ -21,6 +21,7 @@ struct ChartHeader {
   bool own_box = false;
   LatticeBox box;  ///< of all inner vertices: the mesh's range, or with own_box the chart's own
   int edge_exponent = 0;
+  bool aligned = false;  ///< dense: coordinates are first looked for among those of neighbours
   std::uint32_t check = 0;
 };
 

@@ -106,6 +106,8 @@ struct DenseModels {
   AdaptiveUnsigned join_rank;
   std::array<AdaptiveSigned, 3> seed;      ///< corners of a closed component, by axis
   std::array<AdaptiveSigned, 3> isolated;  ///< vertices without faces, by axis
+  /// Whether a coordinate is the i-th candidate, by axis and where the two before were found.
+  std::array<std::array<std::array<std::array<AdaptiveBit, 4>, 5>, 5>, 3> aligned;
   std::vector<MissModel> misses;
 
   DenseModels() {

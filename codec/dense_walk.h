@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct DenseContext {
   ChartCounts expected;   ///< counts that memory is taken for in advance
   int edge_exponent = 0;  ///< edges are about 2^edge_exponent long
   LatticeBox box;         ///< of all inner vertices
+  bool aligned = false;   ///< coordinates are first looked for among those of neighbours
   const CoderTables* tables = nullptr;
 };
 
@@ -38,7 +40,7 @@ struct DenseContext {
 ///   component        = fan*                     until the front is empty
 ///   closed_component = 3 x 3 seed  fan*         while faces are left
 ///   fan      = size  ( join_flag ( join | position ) ){size}
-///   position = 3 misses
+///   position = ( [aligned] | miss ){3}          aligned only in aligned charts: which candidate, if one
 ///   isolated_vertex = 3 differences             while vertices are left
 ///
 /// Free-valence fans as in F. Kaelberer, K. Polthier, U. Reitebuch, M. Wardetzky, "FreeLence - Coding with Free
@@ -70,6 +72,8 @@ class DenseWalk {
 
   /// What was coded; may be taken apart after run().
   [[nodiscard]] DenseSurface& surface() { return surface_; }
+  /// How many coordinates missed their prediction, but not the candidates of an aligned chart. Encoders only.
+  [[nodiscard]] std::uint64_t aligned_misses() const { return aligned_misses_; }
   /// What positions took, in 1/256 bit; the rest is connectivity.
   [[nodiscard]] std::uint64_t geometry_cost() const { return geometry_cost_; }
 
@@ -269,8 +273,16 @@ class DenseWalk {
       const int axis = prediction.axis(k);
       const double guess = prediction.guess(k);
       const std::int32_t rounded = round_half_up(guess);
-      MissModel& model = models_.miss(k, prediction.activity(k), prediction.edge_size());
-      const std::int32_t miss = model.code(coder_, guess - rounded, Coder::kEncodes ? actual[axis] - rounded : 0);
+      std::int32_t miss = 0;
+      const std::optional<std::int32_t> found =
+          context_.aligned ? code_aligned(place, k, axis, actual[axis]) : std::nullopt;
+      if (found) {
+        miss = *found - rounded;
+      } else {
+        MissModel& model = models_.miss(k, prediction.activity(k), prediction.edge_size());
+        miss = model.code(coder_, guess - rounded, Coder::kEncodes ? actual[axis] - rounded : 0);
+        if (Coder::kEncodes && miss != 0) aligned_misses_ += is_aligned(place, axis, actual[axis]);
+      }
       prediction.known(k, in_box(std::int64_t{rounded} + miss, axis));
       sizes[static_cast<std::size_t>(k)] = miss < 0 ? -static_cast<double>(miss) : miss;
     }
@@ -279,6 +291,32 @@ class DenseWalk {
     vertex.normal_miss = 2 * sizes[2];
     surface_.add_vertex(vertex);
     geometry_cost_ += coder_.position() - before;
+  }
+
+  /// Coordinates that vertices around have, and the one that completes a parallelogram with them.
+  [[nodiscard]] std::array<std::int32_t, 4> aligned_candidates(const FanPlace& place, int axis) const {
+    const std::int32_t c = surface_[place.current].position[axis], x = surface_[place.next].position[axis],
+                       p = surface_[place.pivot].position[axis];
+    return {c, x, p, clamp_to_lattice(std::int64_t{c} + x - p)};
+  }
+
+  [[nodiscard]] bool is_aligned(const FanPlace& place, int axis, std::int32_t coordinate) const {
+    const auto candidates = aligned_candidates(place, axis);
+    return std::find(candidates.begin(), candidates.end(), coordinate) != candidates.end();
+  }
+
+  /// The k-th coordinate of a position, if it is one of the candidates.
+  std::optional<std::int32_t> code_aligned(const FanPlace& place, int k, int axis, std::int32_t actual) {
+    const auto candidates = aligned_candidates(place, axis);
+    if (k == 0) found_before_ = {candidates.size(), candidates.size()};
+    auto& bits = models_.aligned[static_cast<std::size_t>(k)][found_before_[0]][found_before_[1]];
+    std::size_t found = 0;
+    for (auto at = candidates.begin(); at != candidates.end(); ++at, ++found) {
+      if (std::find(candidates.begin(), at, *at) != at) continue;  // known not to be it
+      if (coder_.code(bits[found], actual == *at)) break;
+    }
+    found_before_ = {found, found_before_[0]};
+    return found == candidates.size() ? std::nullopt : std::optional(candidates[found]);
   }
 
   /// A position without neighbours, as the difference to the vertex before.
@@ -310,8 +348,9 @@ class DenseWalk {
   DenseModels models_;
   double scale_;
   Vec loops_area_;
-  std::vector<std::uint32_t> touched_;  ///< nodes whose corners a fan changed
-  std::uint64_t geometry_cost_ = 0;
+  std::array<std::size_t, 2> found_before_{};  ///< where the coordinates before of a vertex were found; 4: nowhere
+  std::vector<std::uint32_t> touched_;         ///< nodes whose corners a fan changed
+  std::uint64_t geometry_cost_ = 0, aligned_misses_ = 0;
 };
 
 }  // namespace ramcdb::codec

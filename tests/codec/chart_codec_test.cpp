@@ -192,6 +192,19 @@ TEST(ChartCodec, RefusesWhatIsNoChart) {
   EXPECT_EQ(code_of(good), Errc::cancelled);
 }
 
+TEST(ChartCodec, AlignedChartsTakeCoordinatesFromTheirNeighbours) {
+  constexpr std::uint8_t kAligned = 2;  // of the flags, the third byte
+  const auto flags_of = [](const Chart& chart) {
+    return encode_chart(chart, Profile::dense, {}, testing::box_of(chart)).blob.at(2);
+  };
+  const Chart boxes = testing::boxes(60);
+  EXPECT_EQ(flags_of(boxes), kAligned);
+  EXPECT_EQ(flags_of(testing::cut(testing::torus(24, 14, 4000))), 0);
+  const EncodedChart encoded = encode_chart(boxes, Profile::dense, {}, testing::box_of(boxes));
+  EXPECT_LT(8 * encoded.blob.size(), 11 * boxes.positions.size()) << "bits per vertex";
+  EXPECT_EQ(encode_chart(encoded.decoded, Profile::dense, {}, testing::box_of(boxes)).blob, encoded.blob);
+}
+
 TEST(ChartCodec, GoldenBytes) {
   // Bytes of format 1: never to change.
   EXPECT_EQ(testing::hex(encode(testing::one_triangle()).blob), "01020000010339b2c7c241");

@@ -83,6 +83,8 @@ Chart all_in_one_place(Chart chart) {
 
 }  // namespace
 
+Chart boxes(std::size_t count) { return cut(on_lattice(test::boxes(count), 14)); }
+
 Chart one_triangle() { return {{3}, {{0, 0, 0}, {10, 0, 1}, {0, 10, 2}}, {{0, 1, 2}}}; }
 
 Chart wheel(std::uint32_t rim, bool open) {
@@ -125,7 +127,7 @@ std::vector<NamedChart> manifold_charts() {
       {"equal components in one place", cut(together(ball, ball, {}))},
       {"genus 3", cut(on_lattice(test::genus3(1500), 12))},
       {"scan", cut(on_lattice(test::scan(3000), 12))},
-      {"boxes", cut(on_lattice(test::boxes(40), 14))},
+      {"boxes", boxes(40)},
       {"scan on 20 bits", cut(on_lattice(test::scan(1500), 20))},
       {"terrain on 20 bits", cut(on_lattice(test::terrain(20, 25), 20))},
       {"scan on 30 bits", cut(on_lattice(test::scan(800), 30))},

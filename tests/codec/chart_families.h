@@ -22,6 +22,8 @@ struct NamedChart {
 [[nodiscard]] Chart triangle_soup(std::uint32_t seed);
 
 // Single ones.
+/// Closed boxes along the axes: an aligned chart.
+[[nodiscard]] Chart boxes(std::size_t count);
 [[nodiscard]] Chart one_triangle();
 /// One vertex among `rim` others, in the middle of them or, with `open`, on the border itself.
 [[nodiscard]] Chart wheel(std::uint32_t rim, bool open);
