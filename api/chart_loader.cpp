@@ -87,14 +87,12 @@ LoadedChart ChartLoader::decode(const Job& job) const {
   } catch (const Error& e) {
     throw Error(e.code(), fmt::format("{}: {}", place(at_, job.entry), e.what()), {}, "run `ramcdb verify`");
   }
-  LoadedChart loaded{job.entry,
-                     std::move(decoded.chart),
-                     std::move(border.keys),
-                     decoded.cost,
-                     job.blob.size() + kBlobOverhead,
-                     {},
-                     {},
-                     {}};
+  LoadedChart loaded;
+  loaded.entry = job.entry;
+  loaded.chart = std::move(decoded.chart);
+  loaded.keys = std::move(border.keys);
+  loaded.cost = decoded.cost;
+  loaded.blob_bytes = job.blob.size() + kBlobOverhead;
   const std::size_t inner = loaded.chart.positions.size() - loaded.keys.size();
   if (inner != job.entry.inner_vertices || loaded.chart.faces.size() != job.entry.faces)
     throw Error(Errc::corrupt, "the chart's counts are not those of its index page", place(at_, job.entry),

@@ -69,8 +69,8 @@ struct Edit {
 /// whose other vertices stay; the exact positions of a lossless mesh follow its charts. A changed value touches its
 /// layer in the same charts, and nothing else. No connectivity changes, so wires, corners and loops keep their ids.
 /// Layers follow connectivity, so they stay when vertices move; only where a component has no border to begin at may
-/// another order of its faces make them new. \param parts the region that the keys belong to; keys of one part's charts
-/// refer to its version.
+/// another order of its faces make them new.
+/// \param parts the region that the keys belong to; keys of one part's charts refer to its version.
 [[nodiscard]] EncodedEdit encode_edit(std::span<const RegionPart> parts, const Edit& edit, unsigned threads);
 
 }  // namespace ramcdb::detail

@@ -4,6 +4,7 @@
 #include "api/mesh_file/mesh_file.h"
 #include "db/store.h"
 #include "ramcdb/edit_transaction.h"
+#include "tests/api/blobs_of.h"
 #include "tests/api/face_records.h"
 #include "tests/api/temp_repository.h"
 
@@ -94,16 +95,8 @@ class Painted {
   [[nodiscard]] Repository* operator->() { return &*repository_; }
   [[nodiscard]] fs::path operator/(const std::string& name) const { return folder_ / name; }
   [[nodiscard]] const ImportReport& report() const { return report_; }
-  /// How many blobs of a kind a version wrote.
   [[nodiscard]] std::size_t written(VersionId version, db::Kind kind) const {
-    const auto store = db::Store::open(repository_->folder(), db::Access::read);
-    const auto roots = store->roots(version);
-    const auto reader = store->reader();
-    std::size_t count = 0;
-    for (std::uint32_t id = 1; id <= report_.info.charts; ++id)
-      for (std::uint16_t layer = 0; layer <= (kind == db::Kind::attribute ? 9 : 0); ++layer)
-        count += reader->find({kind, roots.front().mesh, id, version, layer}).has_value();
-    return count;
+    return count_blobs(*repository_, version, kind, report_.info.charts);
   }
 
  private:

@@ -1,11 +1,15 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "api/layers.h"
 #include "api/mesh_file/mesh_file.h"
 #include "ramcdb/figures.h"
 
@@ -13,7 +17,8 @@ namespace ramcdb::test {
 
 /// Everything that a file says of each face: positions on the lattice, attributes of vertices and corners, all of that
 /// turned to the smallest sequence; then attributes of the face. Sorted: equal for files that say the same, however
-/// numbered. Attributes that are kept with an error are compared on their grid, materials and groups by their names.
+/// numbered. Attributes that are kept with an error are compared on their grid, normals as the directions that they are
+/// kept as, materials and groups by their names.
 /// \param place what three numbers stand for a position
 template <class Place>
 std::vector<std::vector<double>> face_records(const mesh_file::MeshData& mesh, Place&& place,
@@ -21,14 +26,29 @@ std::vector<std::vector<double>> face_records(const mesh_file::MeshData& mesh, P
   struct Source {
     const Attribute* attribute;
     double step;
+    std::optional<detail::Layer> directions;
+  };
+  const auto source_of = [](const Attribute& attribute, double max_error) {
+    Source source{&attribute, 2 * max_error, detail::Layer{1, attribute.info, detail::LayerCoding::direction, 0}};
+    if (attribute.info.meaning != Meaning::normal || max_error != source.directions->max_error())
+      source.directions.reset();
+    return source;
   };
   std::map<std::string, Source> sources;
   for (const Attribute& attribute : mesh.attributes)
     for (const MeshInfo::Layer& layer : layers)
-      if (layer.info.name == attribute.info.name) sources[attribute.info.name] = {&attribute, 2 * layer.max_error};
+      if (layer.info.name == attribute.info.name)
+        sources.insert_or_assign(attribute.info.name, source_of(attribute, layer.max_error));
 
   const auto add = [&](std::vector<double>& record, const Source& source, std::size_t at) {
     const AttributeInfo& info = source.attribute->info;
+    if (source.directions) {
+      std::array<std::uint64_t, 2> numbers;
+      const auto value = std::span(source.attribute->values).subspan(3 * at, 3);
+      record.push_back(detail::to_numbers(*source.directions, value, numbers));
+      for (const std::uint64_t number : numbers) record.push_back(static_cast<double>(number));
+      return;
+    }
     for (std::size_t k = 0; k < info.components; ++k) {
       const double number = source.attribute->values[at * info.components + k];
       if (std::isnan(number))

@@ -5,6 +5,7 @@
 
 #include "db/store.h"
 #include "ramcdb/edit_transaction.h"
+#include "tests/api/blobs_of.h"
 #include "tests/api/temp_repository.h"
 
 /// Meshes whose positions are kept to the last bit, through edits too.
@@ -75,13 +76,7 @@ class Lossless {
     return bit_faces(folder_ / name);
   }
   [[nodiscard]] std::size_t written(VersionId version, db::Kind kind) const {
-    const auto store = db::Store::open(repository_->folder(), db::Access::read);
-    const auto roots = store->roots(version);
-    const auto reader = store->reader();
-    std::size_t count = 0;
-    for (std::uint32_t id = 1; id <= report_.info.charts; ++id)
-      count += reader->find({kind, roots.front().mesh, id, version, 0}).has_value();
-    return count;
+    return count_blobs(*repository_, version, kind, report_.info.charts);
   }
 
  private:
