@@ -136,6 +136,12 @@ db::MeshRoot put_mesh(db::Writer& writer, const std::string& name, EncodedMesh& 
     writer.put({db::Kind::chart, mesh, c + 1, {}, 0}, std::move(encoded.charts[c]));
   for (std::uint32_t w = 0; w < encoded.wires.size(); ++w)
     if (!encoded.wires[w].empty()) writer.put({db::Kind::wire, mesh, w + 1, {}, 0}, std::move(encoded.wires[w]));
+  if (record.table) {
+    record.table_version = version;
+    record.next_table = TableId(record.table.value + 1);
+    record.table_bytes += encoded.tables.size() + kBlobOverhead;
+    writer.put({db::Kind::table, mesh, record.table.value, {}, 0}, std::move(encoded.tables));
+  }
   put_layers(writer, mesh, encoded, table, record);
   writer.put({db::Kind::mesh_record, mesh, 1, {}, 0}, encode_record(record));
   return {mesh, name, PageId(static_cast<std::uint32_t>(pages.size())), version, version};
@@ -213,8 +219,10 @@ ImportReport import_mesh(db::Store& store, const std::filesystem::path& file, co
   const chartify::Charts charts = chartify::chartify(canonical.mesh, chartify_options);
   const chartify::WireNet net = chartify::build_wire_net(canonical.mesh, charts);
 
-  EncodedMesh encoded = encode_mesh(canonical.mesh, net, layers, record, codec::CoderTables{}, options.threads,
-                                    stage(options.progress, "encode"));
+  const codec::CoderTables tables = train_tables(net, canonical.mesh.positions.size());
+  if (!(tables == codec::CoderTables{})) record.table = record.next_table;
+  EncodedMesh encoded =
+      encode_mesh(canonical.mesh, net, layers, record, tables, options.threads, stage(options.progress, "encode"));
   note_encoding(record, encoded);
   stage(options.progress, "store");
   publish(store, name, file, options, encoded, layers.table(), record);

@@ -5,6 +5,7 @@
 
 #include "api/page_index.h"
 #include "api/parallel.h"
+#include "codec/dense_training.h"
 #include "codec/wire_codec.h"
 
 namespace ramcdb::detail {
@@ -62,10 +63,19 @@ LeafPage build_leaf(const EncodedMesh& mesh, std::size_t first, std::size_t last
 
 }  // namespace
 
+codec::CoderTables train_tables(const chartify::WireNet& net, std::uint64_t vertices) {
+  constexpr std::uint64_t kMostVertices = 100'000;
+  std::vector<const Chart*> sample;
+  const std::uint64_t every = vertices / kMostVertices + 1;
+  for (std::size_t c = 0; c < net.charts.size(); c += every) sample.push_back(&net.charts[c].chart);
+  return codec::train_dense(sample, vertices);
+}
+
 EncodedMesh encode_mesh(const chartify::IndexedMesh& mesh, const chartify::WireNet& net, const LayerSource& layers,
                         const MeshRecord& record, const codec::CoderTables& tables, unsigned threads,
                         const std::function<void(double)>& progress) {
   EncodedMesh out;
+  if (record.table) out.tables = codec::encode_tables(tables);
   out.charts.resize(net.charts.size());
   out.chart_entries.resize(net.charts.size());
   out.layers.resize(net.charts.size());

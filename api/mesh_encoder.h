@@ -19,8 +19,12 @@ struct EncodedMesh {
   std::vector<PageChart> chart_entries;
   std::vector<PageWire> wire_entries;
   std::vector<PageCorner> corner_entries;
+  Buffer tables;  ///< empty: the built-in ones
   codec::ChartCost cost;
 };
+
+/// Coder tables that suit a new mesh, from a sample of its charts.
+[[nodiscard]] codec::CoderTables train_tables(const chartify::WireNet& net, std::uint64_t vertices);
 
 /// Codes every chart with its layers, and every wire. Versions in the entries are left 0: they are known once the
 /// writer is.

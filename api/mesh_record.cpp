@@ -53,6 +53,7 @@ void visit_ids(Record& r, Visit&& visit) {
   visit("np", r.next_page.value);
   visit("nt", r.next_table.value);
   visit("ti", r.table.value);
+  visit("tv", r.table_version.value);
   visit("la", r.layers.value);
   visit("tf", r.target_faces);
 }

@@ -23,9 +23,13 @@ Snapshot::Impl::Impl(std::shared_ptr<db::Store> store, VersionId version, const 
   if (record_.layers)
     layers_ = detail::decode_layer_table(store_->reader()->get({db::Kind::attribute, root.mesh, 0, record_.layers, 0}),
                                          fmt::format("mesh {}, version {}", root.name, record_.layers.value));
+  if (record_.table)
+    own_tables_ = codec::decode_tables(
+        store_->reader()->get({db::Kind::table, root.mesh, record_.table.value, record_.table_version, 0}));
 }
 
 const codec::CoderTables& Snapshot::Impl::tables(TableId table) const {
+  if (table && table == record_.table) return own_tables_;
   if (table)
     throw Error(Errc::unsupported_version, fmt::format("coder table {} is unknown", table.value), root().name,
                 "use a newer ramcdb");

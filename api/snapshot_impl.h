@@ -25,7 +25,7 @@ class Snapshot::Impl {
   [[nodiscard]] std::uint64_t record_bytes() const { return record_bytes_; }
   [[nodiscard]] const detail::PageIndex& pages() const { return pages_; }
   [[nodiscard]] const detail::LayerTable& layers() const { return layers_; }
-  /// The tables that a chart names. Read once, kept.
+  /// The tables that a chart names. Throws unsupported_version for others than the mesh's own and the built-in ones.
   [[nodiscard]] const codec::CoderTables& tables(TableId table) const;
 
  private:
@@ -36,7 +36,7 @@ class Snapshot::Impl {
   detail::MeshRecord record_;
   detail::LayerTable layers_;
   detail::PageIndex pages_;
-  codec::CoderTables built_in_tables_;
+  codec::CoderTables built_in_tables_, own_tables_;
 };
 
 }  // namespace ramcdb

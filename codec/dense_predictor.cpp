@@ -8,7 +8,7 @@ namespace ramcdb::codec {
 
 namespace {
 
-std::size_t fan_class(const FanPlace& place) {
+std::size_t fan_class_of(const FanPlace& place) {
   const double degrees = 90 * place.angle / (place.edges_left + 1.0);
   constexpr std::array<double, 7> kLimits{36, 46, 54, 62, 70, 82, 98};
   std::size_t angle_class = 0;
@@ -17,7 +17,7 @@ std::size_t fan_class(const FanPlace& place) {
          (place.behind_next != kNone);
 }
 
-std::size_t plane_class(const FanPlace& place, bool pivot_on_border) {
+std::size_t plane_class_of(const FanPlace& place, bool pivot_on_border) {
   return (std::min(place.edges_left, 2u) - 1) * 8 + 4 * (place.behind_current != kNone) +
          2 * (place.behind_next != kNone) + pivot_on_border;
 }
@@ -32,30 +32,32 @@ constexpr double kWeightUnit = 1.0 / 128;
 
 }  // namespace
 
+FanVectors::FanVectors(const DenseSurface& surface, const FanPlace& place)
+    : main_axis(axis_of_largest(place.normal)),
+      fan_class(fan_class_of(place)),
+      plane_class(plane_class_of(place, surface.on_border(place.pivot))) {
+  const LatticePoint pivot = surface[place.pivot].position;
+  const auto from_pivot = [&](std::uint32_t v) { return v == kNone ? Vec{} : difference(surface[v].position, pivot); };
+  const Vec a = from_pivot(place.current), b = from_pivot(place.next);
+  vectors = {a,
+             b,
+             from_pivot(place.behind_current),
+             from_pivot(place.behind_next),
+             cross(place.normal, a),
+             cross(place.normal, b)};
+  reach = std::sqrt(squared_length(a)) + std::sqrt(squared_length(b));
+}
+
 FanPrediction::FanPrediction(const DenseSurface& surface, const CoderTables& tables, const FanPlace& place,
                              double scale)
     : surface_(surface),
       place_(place),
-      plane_weights_(tables.plane[plane_class(place, surface.on_border(place.pivot))]),
-      main_axis_(axis_of_largest(place.normal)) {
-  predict(tables);
+      fan_(surface, place),
+      plane_weights_(tables.plane[fan_.plane_class]),
+      guess_(difference(surface[place.pivot].position, {})) {
+  const FanWeights& weights = tables.fan[fan_.fan_class];
+  for (std::size_t i = 0; i < weights.size(); ++i) guess_ = guess_ + fan_.vectors[i] * (weights[i] * kWeightUnit);
   choose_contexts(scale);
-}
-
-void FanPrediction::predict(const CoderTables& tables) {
-  const LatticePoint pivot = surface_[place_.pivot].position;
-  const auto from_pivot = [&](std::uint32_t v) { return v == kNone ? Vec{} : difference(surface_[v].position, pivot); };
-  const Vec a = from_pivot(place_.current), b = from_pivot(place_.next);
-  const std::array<Vec, 6> vectors{a,
-                                   b,
-                                   from_pivot(place_.behind_current),
-                                   from_pivot(place_.behind_next),
-                                   cross(place_.normal, a),
-                                   cross(place_.normal, b)};
-  const FanWeights& weights = tables.fan[fan_class(place_)];
-  guess_ = difference(pivot, {});
-  for (std::size_t i = 0; i < vectors.size(); ++i) guess_ = guess_ + vectors[i] * (weights[i] * kWeightUnit);
-  reach_ = std::sqrt(squared_length(a)) + std::sqrt(squared_length(b));
 }
 
 void FanPrediction::choose_contexts(double scale) {
@@ -79,14 +81,14 @@ void FanPrediction::choose_contexts(double scale) {
     tangential_activity_ = std::min(kUnknown - 1, half_octave(tangential * mean));
     normal_activity_ = std::min(kUnknown - 1, half_octave(normal * mean));
   }
-  edge_size_ = std::clamp(half_octave(reach_ * scale) / 2 - 1, 0, DenseModels::kEdgeSizes - 1);
+  edge_size_ = std::clamp(half_octave(fan_.reach * scale) / 2 - 1, 0, DenseModels::kEdgeSizes - 1);
 }
 
 double FanPrediction::guess(int k) const {
   double value = guess_[axis(k)];
   if (k == 2) {
     const Vec& n = place_.normal;
-    value -= (n[axis(0)] * miss_[0] + n[axis(1)] * miss_[1]) / n[main_axis_];
+    value -= (n[axis(0)] * miss_[0] + n[axis(1)] * miss_[1]) / n[fan_.main_axis];
     const std::array<double, 3> shifts{plane_shift(place_.pivot, value), plane_shift(place_.current, value),
                                        plane_shift(place_.next, value)};
     for (std::size_t i = 0; i < shifts.size(); ++i) value += shifts[i] * (plane_weights_[i] * kWeightUnit);
@@ -101,17 +103,19 @@ void FanPrediction::known(int k, std::int32_t coordinate) {
   point_[axis(k)] = coordinate;
 }
 
-/// How far above `from` the tangent plane at a vertex passes over the two known coordinates; 0 when it is too steep to
-/// tell, and never more than the fan's reach.
+/// How far above `from` the tangent plane at a vertex passes, never more than the fan's reach; 0 when it does not tell.
 double FanPrediction::plane_shift(std::uint32_t vertex, double from) const {
-  const DenseVertex& v = surface_[vertex];
-  const double up = v.normal[main_axis_];
-  if (!(up * up * 16 > squared_length(v.normal))) return 0;
-  const int x = axis(0), y = axis(1);
-  const double height = v.position[main_axis_] - (v.normal[x] * (static_cast<double>(point_[x]) - v.position[x]) +
-                                                  v.normal[y] * (static_cast<double>(point_[y]) - v.position[y])) /
-                                                     up;
-  return std::clamp(height - from, -reach_, reach_);
+  const std::optional<double> height = plane_height(surface_[vertex], fan_.main_axis, point_);
+  return height ? std::clamp(*height - from, -fan_.reach, fan_.reach) : 0;
+}
+
+std::optional<double> plane_height(const DenseVertex& vertex, int main_axis, LatticePoint point) {
+  const double up = vertex.normal[main_axis];
+  if (!(up * up * 16 > squared_length(vertex.normal))) return std::nullopt;
+  const int x = (main_axis + 1) % 3, y = (main_axis + 2) % 3;
+  return vertex.position[main_axis] - (vertex.normal[x] * (static_cast<double>(point[x]) - vertex.position[x]) +
+                                       vertex.normal[y] * (static_cast<double>(point[y]) - vertex.position[y])) /
+                                          up;
 }
 
 }  // namespace ramcdb::codec

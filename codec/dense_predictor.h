@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "codec/dense_surface.h"
 #include "codec/tables.h"
@@ -20,6 +21,23 @@ struct FanPlace {
   Vec normal;                            ///< unit normal at the pivot
 };
 
+/// What a new vertex is guessed from, apart from weights.
+struct FanVectors {
+  std::array<Vec, 6> vectors;  ///< a, b, c, d, N x a, N x b of FanPrediction
+  double reach = 0;            ///< |a| + |b|
+  int main_axis = 0;           ///< that of the largest component of N
+  std::size_t fan_class = 0, plane_class = 0;
+
+  FanVectors(const DenseSurface& surface, const FanPlace& place);
+
+  /// The axis that is coded k-th, k = 0, 1, 2.
+  [[nodiscard]] int axis(int k) const { return (main_axis + 1 + k) % 3; }
+};
+
+/// The height along `main_axis` of the tangent plane at a vertex over two known coordinates of `point`; nothing when it
+/// is too steep to tell.
+[[nodiscard]] std::optional<double> plane_height(const DenseVertex& vertex, int main_axis, LatticePoint point);
+
 /// Guesses a new vertex from the fan around its pivot.
 ///
 /// With P = pivot, a = current - P, b = next - P, c = behind_current - P, d = behind_next - P (zero when missing) and
@@ -35,7 +53,7 @@ class FanPrediction {
   FanPrediction(const DenseSurface& surface, const CoderTables& tables, const FanPlace& place, double scale);
 
   /// The axis that is coded k-th, k = 0, 1, 2.
-  [[nodiscard]] int axis(int k) const { return (main_axis_ + 1 + k) % 3; }
+  [[nodiscard]] int axis(int k) const { return fan_.axis(k); }
   /// The guess for coordinate axis(k). REQUIRES: the coordinates before it were given to known().
   [[nodiscard]] double guess(int k) const;
   /// Tells coordinate axis(k), which guess(k) was made for.
@@ -48,16 +66,14 @@ class FanPrediction {
   [[nodiscard]] int edge_size() const { return edge_size_; }
 
  private:
-  void predict(const CoderTables& tables);
   void choose_contexts(double scale);
   [[nodiscard]] double plane_shift(std::uint32_t vertex, double from) const;
 
   const DenseSurface& surface_;
   const FanPlace& place_;
+  FanVectors fan_;
   const PlaneWeights& plane_weights_;
   Vec guess_;
-  double reach_ = 0;  ///< |a| + |b|
-  int main_axis_ = 0;
   int tangential_activity_ = 0, normal_activity_ = 0, edge_size_ = 0;
   LatticePoint point_;
   std::array<double, 2> miss_{};  ///< coordinate less guess, not rounded, of the first two axes

@@ -266,6 +266,11 @@ class DenseWalk {
   }
 
   void code_position(const FanPlace& place, LatticePoint actual) {
+    if constexpr (requires { coder_.observe(surface_, place, actual); }) {
+      coder_.observe(surface_, place, actual);  // training, not coding
+      surface_.add_vertex({actual});
+      return;
+    }
     const std::uint64_t before = coder_.position();
     FanPrediction prediction(surface_, *context_.tables, place, scale_);
     std::array<double, 3> sizes{};

@@ -3,53 +3,63 @@
 #include <xxhash.h>
 
 #include "codec/built_in_weights.h"
+#include "codec/range_coder.h"
 #include "codec/varint.h"
 
 namespace ramcdb::codec {
 
 namespace {
 
-/// A table blob:
-///
-///   table   = format:1 fan_mask:12 plane_mask:2 weights* check:4
-///   weights = 6 (fan) or 3 (plane) signed varints       for each class whose bit is set, ascending
-///
-/// Bit i of a mask, lowest first, says that class i differs from the built-in table. check: the lower half of XXH3-64
-/// over all bytes before it. Formats that were ever written: 1.
+// table   = format:1 check:fixed32 stream
+// stream  = class*                          fan classes, then plane classes, ascending
+// class   = own:bit difference{6 or 3}      differences to the built-in weights, if it has weights of its own
+// check   = the lower half of XXH3-64 over all weights, each fixed32. Formats that were ever written: 1.
 constexpr std::uint8_t kTableFormat = 1;
 
-std::uint32_t check_of(Bytes bytes) { return static_cast<std::uint32_t>(XXH3_64bits(bytes.data(), bytes.size())); }
-
-template <class Classes>
-void put_mask(Buffer& out, const Classes& classes, const Classes& built_in) {
-  for (std::size_t i = 0; i < classes.size(); i += 8) {
-    unsigned bits = 0;
-    for (std::size_t j = 0; j < 8; ++j) bits |= static_cast<unsigned>(classes[i + j] != built_in[i + j]) << j;
-    out.push_back(static_cast<std::uint8_t>(bits));
+/// The classes of one kind, for encoder and decoder alike.
+template <class Coder, class Classes>
+void code_classes(Coder& coder, Classes& classes, const Classes& built_in) {
+  AdaptiveBit own;
+  AdaptiveSigned difference;
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    if (!coder.code(own, classes[i] != built_in[i])) continue;
+    for (std::size_t k = 0; k < classes[i].size(); ++k) {
+      const std::int64_t weight = std::int64_t{difference.code(coder, classes[i][k] - built_in[i][k])} + built_in[i][k];
+      if (weight < -kMaxWeight || weight > kMaxWeight)
+        throw Error(Errc::corrupt, "a table blob has a weight beyond reason");
+      classes[i][k] = static_cast<std::int16_t>(weight);
+    }
+    if (classes[i] == built_in[i]) throw Error(Errc::corrupt, "a table blob says what is built in");
   }
 }
 
-template <class Classes>
-void put_weights(Buffer& out, const Classes& classes, const Classes& built_in) {
-  for (std::size_t i = 0; i < classes.size(); ++i)
-    if (classes[i] != built_in[i])
-      for (const std::int16_t weight : classes[i]) {
+template <class Coder>
+void code_tables(Coder& coder, CoderTables& tables) {
+  const CoderTables built_in;
+  code_classes(coder, tables.fan, built_in.fan);
+  code_classes(coder, tables.plane, built_in.plane);
+}
+
+std::uint32_t check_of(const CoderTables& tables) {
+  Buffer bytes;
+  const auto add = [&](const auto& classes) {
+    for (const auto& weights : classes)
+      for (const std::int16_t weight : weights) put_fixed32(bytes, static_cast<std::uint32_t>(weight));
+  };
+  add(tables.fan);
+  add(tables.plane);
+  return static_cast<std::uint32_t>(XXH3_64bits(bytes.data(), bytes.size()));
+}
+
+void require_weights(const CoderTables& tables) {
+  const auto require = [](const auto& classes) {
+    for (const auto& weights : classes)
+      for (const std::int16_t weight : weights)
         if (weight < -kMaxWeight || weight > kMaxWeight)
           throw Error(Errc::invalid_argument, "a weight of a coder table is beyond reason");
-        put_signed_varint(out, weight);
-      }
-}
-
-template <class Classes>
-void take_weights(ByteReader& reader, Bytes mask, Classes& classes) {
-  for (std::size_t i = 0; i < classes.size(); ++i) {
-    if ((mask[i / 8] >> (i % 8) & 1) == 0) continue;
-    for (std::int16_t& weight : classes[i]) {
-      const std::int64_t value = reader.signed_varint();
-      if (value < -kMaxWeight || value > kMaxWeight) reader.fail("has a weight beyond reason");
-      weight = static_cast<std::int16_t>(value);
-    }
-  }
+  };
+  require(tables.fan);
+  require(tables.plane);
 }
 
 }  // namespace
@@ -57,13 +67,14 @@ void take_weights(ByteReader& reader, Bytes mask, Classes& classes) {
 CoderTables::CoderTables() : fan(kBuiltInFanWeights), plane(kBuiltInPlaneWeights) {}
 
 Buffer encode_tables(const CoderTables& tables) {
-  const CoderTables built_in;
+  require_weights(tables);
   Buffer out{kTableFormat};
-  put_mask(out, tables.fan, built_in.fan);
-  put_mask(out, tables.plane, built_in.plane);
-  put_weights(out, tables.fan, built_in.fan);
-  put_weights(out, tables.plane, built_in.plane);
-  put_fixed32(out, check_of(out));
+  put_fixed32(out, check_of(tables));
+  CoderTables coded = tables;
+  RangeEncoder coder;
+  code_tables(coder, coded);
+  const Buffer stream = coder.finish();
+  out.insert(out.end(), stream.begin(), stream.end());
   return out;
 }
 
@@ -73,14 +84,12 @@ CoderTables decode_tables(Bytes blob) {
     if (format > kTableFormat) throw Error(Errc::unsupported_version, "a table blob of a newer format");
     reader.fail("is of no known format");
   }
+  const std::uint32_t check = reader.fixed32();
   CoderTables tables;
-  const Bytes fan_mask = reader.take(kFanClasses / 8);
-  const Bytes plane_mask = reader.take(kPlaneClasses / 8);
-  take_weights(reader, fan_mask, tables.fan);
-  take_weights(reader, plane_mask, tables.plane);
-  const Bytes checked = blob.first(blob.size() - reader.rest().size());
-  if (reader.fixed32() != check_of(checked)) reader.fail("is damaged");
-  reader.expect_end();
+  RangeDecoder coder(reader.rest());
+  code_tables(coder, tables);
+  coder.finish();
+  if (check_of(tables) != check) reader.fail("is damaged");
   return tables;
 }
 

@@ -2,6 +2,7 @@
 #include <fstream>
 
 #include "tests/api/blobs_of.h"
+#include "tests/api/numbered_edits.h"
 #include "tests/api/temp_repository.h"
 
 namespace ramcdb::test {
@@ -93,6 +94,21 @@ TEST(Import, DoesNotDependOnOrderOrThreads) {
   options.threads = 1;
   (void)repository->import(repository / "shuffled.ply", options);
   EXPECT_EQ(blobs_of(*repository, "mesh"), blobs_of(*repository, "shuffled"));
+}
+
+/// Weights that suit the mesh are one blob; charts that are edited later are coded with them, too.
+TEST(Import, TrainsACoderTableThatEditsKeepUsing) {
+  TempRepository repository(terrain(80, 70));
+  const std::uint64_t charts = repository->snapshot().info().charts;
+  EXPECT_EQ(count_blobs(*repository, VersionId(1), db::Kind::table, 3), 1U);
+  const NumberedEdits edits(*repository);
+  (void)edits.commit(*repository, 1);
+  EXPECT_EQ(count_blobs(*repository, VersionId(2), db::Kind::table, 3), 0U);
+  EXPECT_GT(count_blobs(*repository, VersionId(2), db::Kind::chart, charts), 0U);
+  EXPECT_TRUE(repository->verify({}).ok());
+  const std::uint64_t before = repository->snapshot({}, "v1").info().bytes.geometry,
+                      after = repository->snapshot().info().bytes.geometry;
+  EXPECT_LT(after, before * 11 / 10) << "as dense as before";
 }
 
 TEST(Import, RefusesWhatItCannotTakeWholeAndChangesNothing) {
