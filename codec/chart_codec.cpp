@@ -107,7 +107,7 @@ ChartHeader header_of(const Chart& chart, std::uint32_t border, const LatticeBox
 /// Puts the pieces of a coded chart together; `payload` is what the coder wrote.
 EncodedChart assemble(ChartHeader header, Chart decoded, const Buffer& payload, const CoderTables& tables,
                       const LatticeBox& range) {
-  header.check = chart_check(header, decoded, range, tables);
+  header.check = chart_check(header, payload, decoded, range, tables);
   EncodedChart encoded;
   put_chart_header(encoded.blob, header);
   encoded.blob.insert(encoded.blob.end(), payload.begin(), payload.end());
@@ -217,6 +217,7 @@ DecodedChart decode_chart(Bytes blob, std::span<const LatticePoint> border, std:
   const ChartHeader header = take_chart_header(reader, range);
   if (border.size() + header.counts.inner_vertices > kMaxChartVertices) reader.fail("declares too many vertices");
 
+  const Bytes payload = reader.rest();
   DecodedChart decoded;
   decoded.coding = header.coding;
   decoded.chart.loop_sizes.assign(loop_sizes.begin(), loop_sizes.end());
@@ -229,13 +230,12 @@ DecodedChart decode_chart(Bytes blob, std::span<const LatticePoint> border, std:
     decoded.chart.faces = std::move(dense.faces);
     decoded.cost = blob_cost(blob.size(), dense.connectivity_cost, dense.geometry_cost);
   } else {
-    const std::size_t payload = reader.rest().size();
     RawContent raw = decode_raw(reader, border, header.counts, header.box);
-    decoded.cost = raw_cost(blob.size(), payload, raw.positions, border.size(), header.box.lo);
+    decoded.cost = raw_cost(blob.size(), payload.size(), raw.positions, border.size(), header.box.lo);
     decoded.chart.positions = std::move(raw.positions);
     decoded.chart.faces = std::move(raw.faces);
   }
-  if (chart_check(header, decoded.chart, range, tables) != header.check)
+  if (chart_check(header, payload, decoded.chart, range, tables) != header.check)
     reader.fail("is damaged, or was not coded with this border, table and range");
   return decoded;
 }

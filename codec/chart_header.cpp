@@ -4,9 +4,10 @@
 
 #include <array>
 #include <bit>
-#include <cstring>
 #include <memory>
 #include <new>
+#include <type_traits>
+#include <vector>
 
 namespace ramcdb::codec {
 
@@ -46,37 +47,38 @@ void put_fields(Buffer& out, const ChartHeader& header) {
   if (header.coding == ChartCoding::dense) out.push_back(static_cast<std::uint8_t>(header.edge_exponent));
 }
 
-/// XXH3-64 of whole numbers, each as four bytes, lowest first.
+/// XXH3-64 of bytes and whole numbers, each of these as four bytes, lowest first.
 class WordHash {
  public:
   WordHash() : state_(XXH3_createState(), XXH3_freeState) {
     if (!state_ || XXH3_64bits_reset(state_.get()) != XXH_OK) throw std::bad_alloc();
   }
 
+  void add(Bytes bytes) { (void)XXH3_64bits_update(state_.get(), bytes.data(), bytes.size()); }
   void add(std::uint32_t word) {
-    if constexpr (std::endian::native != std::endian::little) word = swapped(word);
-    std::memcpy(bytes_.data() + filled_, &word, 4);
-    filled_ += 4;
-    if (filled_ == bytes_.size()) pass_on();
+    const std::array<std::uint8_t, 4> bytes{static_cast<std::uint8_t>(word), static_cast<std::uint8_t>(word >> 8),
+                                            static_cast<std::uint8_t>(word >> 16),
+                                            static_cast<std::uint8_t>(word >> 24)};
+    add(Bytes(bytes));
   }
   void add(LatticePoint p) {
     for (int a = 0; a < 3; ++a) add(static_cast<std::uint32_t>(p[a]));
   }
-  [[nodiscard]] std::uint64_t digest() {
-    pass_on();
-    return XXH3_64bits_digest(state_.get());
+  /// Things that are nothing but such numbers, in one go where memory has them in that order.
+  template <class T>
+  void add_all(const std::vector<T>& things) {
+    static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % 4 == 0);
+    if constexpr (std::endian::native == std::endian::little) {
+      (void)XXH3_64bits_update(state_.get(), things.data(), things.size() * sizeof(T));
+    } else {
+      for (const T& thing : things)
+        for (const std::uint32_t word : std::bit_cast<std::array<std::uint32_t, sizeof(T) / 4>>(thing)) add(word);
+    }
   }
+  [[nodiscard]] std::uint64_t digest() const { return XXH3_64bits_digest(state_.get()); }
 
  private:
-  static std::uint32_t swapped(std::uint32_t x) { return x << 24 | (x << 8 & 0xff0000) | (x >> 8 & 0xff00) | x >> 24; }
-  void pass_on() {
-    (void)XXH3_64bits_update(state_.get(), bytes_.data(), filled_);
-    filled_ = 0;
-  }
-
   std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_;
-  std::array<std::uint8_t, 4096> bytes_;
-  std::size_t filled_ = 0;
 };
 
 }  // namespace
@@ -112,17 +114,17 @@ ChartHeader take_chart_header(ByteReader& reader, const LatticeBox& range) {
   return header;
 }
 
-std::uint32_t chart_check(const ChartHeader& header, const Chart& chart, const LatticeBox& range,
+std::uint32_t chart_check(const ChartHeader& header, Bytes payload, const Chart& chart, const LatticeBox& range,
                           const CoderTables& tables) {
   Buffer fields;
   put_fields(fields, header);
   WordHash hash;
-  for (const std::uint8_t field : fields) hash.add(field);
+  hash.add(Bytes(fields));
+  hash.add(payload);
   hash.add(static_cast<std::uint32_t>(chart.loop_sizes.size()));
-  for (const std::uint32_t size : chart.loop_sizes) hash.add(size);
-  for (const LatticePoint p : chart.positions) hash.add(p);
-  for (const Triangle& face : chart.faces)
-    for (const std::uint32_t v : face) hash.add(v);
+  hash.add_all(chart.loop_sizes);
+  hash.add_all(chart.positions);
+  hash.add_all(chart.faces);
   hash.add(range.lo);
   hash.add(range.hi);
   for (const FanWeights& weights : tables.fan)

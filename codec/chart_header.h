@@ -38,10 +38,10 @@ void put_chart_header(Buffer& out, const ChartHeader& header);
 /// \param range what the box is unless the chart has its own
 [[nodiscard]] ChartHeader take_chart_header(ByteReader& reader, const LatticeBox& range);
 
-/// The check of a chart that was coded with `header`, `range` and `tables`: over the bytes of the header before the
-/// check, the number of loops, loop sizes, positions, faces, the range, and the weights of fan and plane classes, every
-/// number (also every byte of the header) as four bytes, lowest first.
-[[nodiscard]] std::uint32_t chart_check(const ChartHeader& header, const Chart& chart, const LatticeBox& range,
-                                        const CoderTables& tables);
+/// The check of a chart that was coded as `payload` with `header`, `range` and `tables`: over the bytes of the header
+/// before the check and of the payload; the number of loops, loop sizes, positions, faces, the range, and the weights
+/// of fan and plane classes, each of these numbers as four bytes, lowest first.
+[[nodiscard]] std::uint32_t chart_check(const ChartHeader& header, Bytes payload, const Chart& chart,
+                                        const LatticeBox& range, const CoderTables& tables);
 
 }  // namespace ramcdb::codec

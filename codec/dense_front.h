@@ -17,7 +17,6 @@ struct FrontNode {
   std::uint32_t live = kNone;      ///< where live() lists it; kNone when it is not on the front any more
   std::uint32_t bucket = kNone;    ///< of the queue; kNone when it is not queued
   std::uint32_t older = kNone, newer = kNone;  ///< neighbours in the bucket
-  double angle = 0;                            ///< of the corner that is still open, in quadrants
 };
 
 /// The front: all loops between the decoded part of a chart and the rest, as rings of nodes with the rest on the left,
@@ -66,13 +65,11 @@ class DenseFront {
     nodes_[node].live = kNone;
   }
 
-  /// Queues a node, again if need be, ahead of all others with such an angle.
-  void queue(std::uint32_t node, double angle) {
+  /// Queues a node, again if need be, ahead of all others of its bucket, which is below kBuckets.
+  void queue(std::uint32_t node, std::uint32_t bucket) {
     unqueue(node);
     FrontNode& n = nodes_[node];
-    const auto sixteenth = static_cast<std::uint32_t>(16 * angle);
-    n.angle = angle;
-    n.bucket = sixteenth < kBuckets ? sixteenth : kBuckets - 1;
+    n.bucket = bucket;
     n.older = newest_[n.bucket];
     n.newer = kNone;
     if (n.older != kNone) nodes_[n.older].newer = node;

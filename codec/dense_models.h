@@ -4,8 +4,6 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <type_traits>
-#include <vector>
 
 #include "codec/built_in_prior.h"
 #include "codec/range_coder.h"
@@ -15,19 +13,22 @@
 /// from the same state, so that it opens alone.
 namespace ramcdb::codec {
 
-/// How many earlier bits a built-in probability stands for.
-inline constexpr std::uint16_t kPriorBits = 10;
-using MissPrior = std::remove_cvref_t<decltype(kMissPrior[0])>;
-
-/// An adaptive bit that starts from a built-in probability, in 1/256.
-inline AdaptiveBit learned(std::uint8_t p) { return {static_cast<std::uint16_t>(p * 256), kPriorBits}; }
+/// A bit's beginning, as the built-in prior says it: the probability of a one in 1/8192, and in the lowest three bits
+/// how many earlier bits it stands for, one of kPriorBits.
+inline constexpr std::array<std::uint16_t, 8> kPriorBits{0, 2, 5, 10, 20, 40, 80, 120};
+inline AdaptiveBit built_in_bit(std::uint16_t prior) {
+  return {static_cast<std::uint16_t>(prior & 0xfff8), kPriorBits[prior & 7]};
+}
 
 /// How many edges a pivot has inside its open corner: unary, by the corner's angle and the faces the pivot has already.
 class FanSizeModel {
  public:
-  FanSizeModel() {
-    for (std::size_t a = 0; a < bits_.size(); ++a)
-      for (std::size_t i = 0; i < kFanSizePrior[a].size(); ++i) bits_[a][i / 4][i % 4] = learned(kFanSizePrior[a][i]);
+  /// Calls `visit` with every bit that has a built-in beginning, in a fixed order.
+  template <class Visit>
+  void visit_built_in(Visit&& visit) {
+    for (auto& row : bits_)
+      for (auto& bits : row)
+        for (std::size_t i = 0; i < 6; ++i) visit(bits[i]);
   }
 
   /// \param angle in quadrants \param faces of the pivot \param max the largest size that can be meant
@@ -51,13 +52,12 @@ class FanSizeModel {
 /// magnitude, the rest raw. The rounded-off fraction of the prediction tells which neighbour is the likelier.
 class MissModel {
  public:
-  MissModel() = default;
-  explicit MissModel(const MissPrior& prior) {
-    const std::uint8_t* p = prior.data();
-    for (AdaptiveBit& bit : nonzero_) bit = learned(*p++);
-    for (AdaptiveBit& bit : negative_) bit = learned(*p++);
-    for (std::size_t i = 0; i < 11; ++i) exponent_[i] = learned(*p++);
-    for (std::size_t i = 1; i < 6; ++i) second_[i] = learned(*p++);
+  template <class Visit>
+  void visit_built_in(Visit&& visit) {
+    for (AdaptiveBit& bit : nonzero_) visit(bit);
+    for (AdaptiveBit& bit : negative_) visit(bit);
+    for (std::size_t i = 0; i < 12; ++i) visit(exponent_[i]);
+    for (std::size_t i = 1; i < 7; ++i) visit(second_[i]);
   }
 
   /// \param fraction prediction less its rounded value, in [-1/2, 1/2]
@@ -108,12 +108,20 @@ struct DenseModels {
   std::array<AdaptiveSigned, 3> isolated;  ///< vertices without faces, by axis
   /// Whether a coordinate is the i-th candidate, by axis and where the two before were found.
   std::array<std::array<std::array<std::array<AdaptiveBit, 4>, 5>, 5>, 3> aligned;
-  std::vector<MissModel> misses;
+  std::array<MissModel, 3 * kActivities * kEdgeSizes> misses;
 
+  /// Begins with what is built in.
   DenseModels() {
-    static_assert(kMissPrior.size() == 3 * kActivities, "a row per kind and activity");
-    misses.reserve(kMissPrior.size() * kEdgeSizes);
-    for (const MissPrior& prior : kMissPrior) misses.insert(misses.end(), kEdgeSizes, MissModel(prior));
+    const std::uint16_t* next = kBuiltInPrior.data();
+    visit_built_in([&](AdaptiveBit& bit) { bit = built_in_bit(*next++); });
+  }
+
+  template <class Visit>
+  void visit_built_in(Visit&& visit) {
+    fan_size.visit_built_in(visit);
+    for (auto& bits : join)
+      for (AdaptiveBit& bit : bits) visit(bit);
+    for (MissModel& model : misses) model.visit_built_in(visit);
   }
 
   /// \param kind 0, 1: first and second tangential axis, 2: the axis along the normal

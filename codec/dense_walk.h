@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "codec/dense_front.h"
@@ -72,6 +74,7 @@ class DenseWalk {
 
   /// What was coded; may be taken apart after run().
   [[nodiscard]] DenseSurface& surface() { return surface_; }
+  [[nodiscard]] DenseModels& models() { return *models_; }
   /// How many coordinates missed their prediction, but not the candidates of an aligned chart. Encoders only.
   [[nodiscard]] std::uint64_t aligned_misses() const { return aligned_misses_; }
   /// What positions took, in 1/256 bit; the rest is connectivity.
@@ -106,7 +109,7 @@ class DenseWalk {
   void begin_at_seed() {
     const std::array<LatticePoint, 3> corners = guide_.next_seed();
     const std::uint32_t a = surface_.vertex_count();
-    for (const LatticePoint corner : corners) code_free_position(models_.seed, corner);
+    for (const LatticePoint corner : corners) code_free_position(models_->seed, corner);
     surface_.add_face(a, a + 1, a + 2);
     const std::uint32_t first = add_node(a, a + 1);
     add_node(a + 2, a);
@@ -116,7 +119,7 @@ class DenseWalk {
     for (std::uint32_t i = 0; i < 3; ++i) requeue(first + i);
   }
 
-  void code_isolated() { code_free_position(models_.isolated, guide_.next_isolated(surface_.next_vertex())); }
+  void code_isolated() { code_free_position(models_->isolated, guide_.next_isolated(surface_.next_vertex())); }
 
   void walk_front() {
     for (std::uint32_t pivot = front_.pop(); pivot != kNone; pivot = front_.pop()) code_fan(pivot);
@@ -125,7 +128,7 @@ class DenseWalk {
   void code_fan(std::uint32_t pivot) {
     FanPlace place;
     place.pivot = front_[pivot].vertex;
-    place.angle = front_[pivot].angle;
+    place.angle = open_angle(pivot, normal_at(pivot));
     std::uint32_t current = front_[pivot].prev;
     touched_.assign(1, current);
 
@@ -150,14 +153,14 @@ class DenseWalk {
 
   std::uint32_t code_fan_size(std::uint32_t pivot, const FanPlace& place) {
     const std::uint32_t inside = guide_.begin_fan(front_[pivot].prev, pivot);
-    return models_.fan_size.code(coder_, place.angle, surface_[place.pivot].faces, surface_.on_border(place.pivot),
-                                 surface_.faces_left(), inside);
+    return models_->fan_size.code(coder_, place.angle, surface_[place.pivot].faces, surface_.on_border(place.pivot),
+                                  surface_.faces_left(), inside);
   }
 
   /// Codes the face at the edge from `current` to the pivot; returns the node of its third vertex next to the pivot.
   std::uint32_t code_apex(std::uint32_t pivot, std::uint32_t current, const FanPlace& place) {
     auto& join_flag =
-        models_.join[std::min(place.edges_left, 4u) - 1][std::min<std::size_t>(15, front_.live().size() / 2)];
+        models_->join[std::min(place.edges_left, 4u) - 1][std::min<std::size_t>(15, front_.live().size() / 2)];
     if (coder_.code(join_flag, guide_.apex_is_known())) return join(pivot, current, place);
 
     const std::uint32_t vertex = surface_.next_vertex();
@@ -176,7 +179,7 @@ class DenseWalk {
   /// The third vertex is on the front already. Its node `there` gets a twin next to the pivot.
   std::uint32_t join(std::uint32_t pivot, std::uint32_t current, const FanPlace& place) {
     join_search_.rank_near(join_target(place), {place.pivot, place.current, place.next});
-    const std::uint32_t there = join_search_.code(coder_, models_.join_rank, guide_.apex_node(front_));
+    const std::uint32_t there = join_search_.code(coder_, models_->join_rank, guide_.apex_node(front_));
     const std::uint32_t vertex = front_[there].vertex;
     surface_.add_face(place.current, place.pivot, vertex);
     const std::uint32_t before = front_[there].prev;
@@ -222,17 +225,26 @@ class DenseWalk {
   }
 
   void requeue(std::uint32_t node) {
-    const FrontNode& n = front_[node];
-    const LatticePoint p = surface_[n.vertex].position;
-    const Vec to_next = difference(surface_[front_[n.next].vertex].position, p);
-    const Vec to_prev = difference(surface_[front_[n.prev].vertex].position, p);
-    front_.queue(node, corner_angle(to_next, to_prev, normal_at(node)));
+    const auto [to_next, to_prev] = sides(node);
+    front_.queue(node, corner_sixteenth(to_next, to_prev, normal_at(node)));
   }
 
+  [[nodiscard]] double open_angle(std::uint32_t node, Vec normal) const {
+    const auto [to_next, to_prev] = sides(node);
+    return corner_angle(to_next, to_prev, normal);
+  }
   [[nodiscard]] double open_angle(const FanPlace& place) const {
     const LatticePoint p = surface_[place.pivot].position;
     return corner_angle(difference(surface_[place.next].position, p), difference(surface_[place.current].position, p),
                         place.normal);
+  }
+
+  /// From a node to the next one and to the one before.
+  [[nodiscard]] std::pair<Vec, Vec> sides(std::uint32_t node) const {
+    const FrontNode& n = front_[node];
+    const LatticePoint p = surface_[n.vertex].position;
+    return {difference(surface_[front_[n.next].vertex].position, p),
+            difference(surface_[front_[n.prev].vertex].position, p)};
   }
 
   /// A vector along the surface normal at a node: of its own decoded faces or else of the nearest along the front that
@@ -284,7 +296,7 @@ class DenseWalk {
       if (found) {
         miss = *found - rounded;
       } else {
-        MissModel& model = models_.miss(k, prediction.activity(k), prediction.edge_size());
+        MissModel& model = models_->miss(k, prediction.activity(k), prediction.edge_size());
         miss = model.code(coder_, guess - rounded, Coder::kEncodes ? actual[axis] - rounded : 0);
         if (Coder::kEncodes && miss != 0) aligned_misses_ += is_aligned(place, axis, actual[axis]);
       }
@@ -314,7 +326,7 @@ class DenseWalk {
   std::optional<std::int32_t> code_aligned(const FanPlace& place, int k, int axis, std::int32_t actual) {
     const auto candidates = aligned_candidates(place, axis);
     if (k == 0) found_before_ = {candidates.size(), candidates.size()};
-    auto& bits = models_.aligned[static_cast<std::size_t>(k)][found_before_[0]][found_before_[1]];
+    auto& bits = models_->aligned[static_cast<std::size_t>(k)][found_before_[0]][found_before_[1]];
     std::size_t found = 0;
     for (auto at = candidates.begin(); at != candidates.end(); ++at, ++found) {
       if (std::find(candidates.begin(), at, *at) != at) continue;  // known not to be it
@@ -350,7 +362,7 @@ class DenseWalk {
   DenseSurface surface_;
   DenseFront front_;
   JoinSearch join_search_;
-  DenseModels models_;
+  std::unique_ptr<DenseModels> models_ = std::make_unique<DenseModels>();
   double scale_;
   Vec loops_area_;
   std::array<std::size_t, 2> found_before_{};  ///< where the coordinates before of a vertex were found; 4: nowhere
