@@ -72,7 +72,9 @@ class MissModel {
     const std::uint32_t wanted = miss < 0 ? 0u - static_cast<std::uint32_t>(miss) : static_cast<std::uint32_t>(miss);
     const int wanted_exponent = static_cast<int>(std::bit_width(wanted)) - 1;
     int exponent = 0;
-    while (exponent < 31 && coder.code(exponent_[std::min(15, exponent)], wanted_exponent > exponent)) ++exponent;
+    while (exponent < 31 &&
+           coder.code(exponent_[static_cast<std::size_t>(std::min(15, exponent))], wanted_exponent > exponent))
+      ++exponent;
 
     std::uint32_t magnitude = 1;
     int left = exponent;

@@ -122,7 +122,7 @@ bool Columns::add(const Attribute& attribute, std::string name, NumberType type,
 void Columns::number(std::string_view word, std::string_view base, std::vector<const Attribute*>& attributes) {
   // "texture_2" stands behind "texture_1"; those of other names behind all.
   std::stable_sort(attributes.begin(), attributes.end(), [&](const Attribute* a, const Attribute* b) {
-    constexpr std::size_t kLast = -1;
+    constexpr auto kLast = static_cast<std::size_t>(-1);
     return number_behind(a->info.name, base, true).value_or(kLast) <
            number_behind(b->info.name, base, true).value_or(kLast);
   });

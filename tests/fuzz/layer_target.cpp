@@ -1,4 +1,5 @@
 #include "codec/layer_codec.h"
+#include "codec/octahedron.h"
 #include "tests/fuzz/coder_input.h"
 
 /// A layer that is decoded has a number below 2^bits each, and comes back from its own blob.
