@@ -34,13 +34,14 @@ std::optional<FastStream> encode_fast(const Chart& chart, const FastContext& con
     positions.push_back(position_of(chart.positions[v]));
   }
   const bool wide = needs_wide_sums(context.box, context.border);
-  const auto residuals = misses(plan, border, positions, context.box.lo, built_in_place_weights(), wide);
+  const auto residuals = misses(plan, border, positions, context.box.lo, context.tables->fast.weights(), wide);
 
   const Buffer side = steps.finish_side();
   put_varint(stream.bytes, steps.joins());
   put_varint(stream.bytes, side.size());
   stream.bytes.insert(stream.bytes.end(), side.begin(), side.end());
-  for (const Buffer& part : {steps.finish_symbols(built_in_step_tables()), encode_residuals(plan, border, residuals)})
+  for (const Buffer& part :
+       {steps.finish_symbols(context.tables->fast.step_tables()), encode_residuals(plan, border, residuals)})
     stream.bytes.insert(stream.bytes.end(), part.begin(), part.end());
   stream.coded.faces = std::move(plan.faces);
   return stream;
@@ -67,7 +68,7 @@ FastChart decode_fast(Bytes bytes, const FastContext& context) {
   check_plausible(reader, context, joins);
   const Bytes side = reader.take(reader.varint_up_to(~std::uint32_t{0}));
   const RansDecoder state(reader.fixed32());
-  FastStepReader steps(side, state, WordReader(reader.rest()), built_in_step_tables());
+  FastStepReader steps(side, state, WordReader(reader.rest()), context.tables->fast.step_tables());
   FastPlan plan = FastWalk(steps, FastOutline{context.loop_sizes, context.counts, joins}).run();
   if (plan.joins != joins) reader.fail("has fewer joins than it declares");
   (void)reader.take(steps.finish());
@@ -78,7 +79,7 @@ FastChart decode_fast(Bytes bytes, const FastContext& context) {
   const auto residuals = decode_residuals(reader.rest(), plan, border);
   std::vector<FastPosition> positions(border + plan.places.size());
   for (std::uint32_t v = 0; v < border; ++v) positions[v] = position_of(context.border[v]);
-  place_all(plan, border, residuals, context.box.lo, built_in_place_weights(),
+  place_all(plan, border, residuals, context.box.lo, context.tables->fast.weights(),
             needs_wide_sums(context.box, context.border), positions);
   chart.positions.reserve(positions.size());
   for (const FastPosition& p : positions)

@@ -19,7 +19,6 @@ namespace ramcdb::codec {
 
 /// A position with room for vector instructions.
 using FastPosition = std::array<std::uint32_t, 4>;
-using FastWeights = std::array<PlaceWeights, kFastPredictors>;
 
 /// Whether positions within `box` and `border` may be too far apart for sums of 32 bits.
 [[nodiscard]] bool needs_wide_sums(const LatticeBox& box, std::span<const LatticePoint> border);

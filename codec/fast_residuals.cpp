@@ -127,7 +127,6 @@ Buffer encode_residuals(const FastPlan& plan, std::uint32_t border, std::span<co
       }
     }
     scales.learn(border + i, contexts, residuals[i]);
-    if ((i + 1) % FastScales::kBlock == 0) scales.renew_all();
   }
 
   std::array<RansEncoder, kStates> states;
@@ -170,7 +169,6 @@ std::vector<FastResidual> decode_residuals(Bytes bytes, const FastPlan& plan, st
       residuals[i][a] = unzigzag32(number);
     }
     scales.learn(border + i, contexts, residuals[i]);
-    if ((i + 1) % FastScales::kBlock == 0) scales.renew_all();
   }
   for (const RansDecoder& state : states)
     if (!state.at_end()) reader.fail("is damaged");

@@ -31,7 +31,7 @@ double two_sided(double mean, std::uint64_t from, std::uint64_t to) {
 
 /// Misses of surfaces: mostly near, a part with a longer tail.
 double probability(double mean, std::uint64_t from, std::uint64_t to) {
-  return 0.75 * two_sided(0.8 * mean, from, to) + 0.25 * two_sided(1.6 * mean, from, to);
+  return 0.85 * two_sided(0.85 * mean, from, to) + 0.15 * two_sided(1.85 * mean, from, to);
 }
 
 RansTable table_of(double mean) {
@@ -63,7 +63,7 @@ const std::array<RansTable, kScales>& scale_tables() {
     auto all = std::make_unique<std::array<RansTable, kScales>>();
     (*all)[0] = table_of(0.0625);
     for (std::uint32_t s = 1; s < kScales; ++s) {
-      const auto quarters = static_cast<double>((std::uint64_t{5} + 2 * ((s - 1) % 2)) << ((s - 1) / 2));
+      const auto quarters = static_cast<double>(quarters_of(s));
       (*all)[s] = table_of(quarters / 32);
     }
     return all;

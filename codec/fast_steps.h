@@ -184,6 +184,9 @@ class FastStepWriter {
   [[nodiscard]] std::uint32_t joins() const { return joins_; }
   /// What FastStepReader reads: the symbols, and apart from them what was coded on the side.
   [[nodiscard]] Buffer finish_symbols(const FastStepTables& tables) const;
+  void count_symbols(std::array<std::array<std::uint64_t, kStepSymbols>, kStepContexts>& counts) const {
+    for (const Symbol s : symbols_) ++counts[s.context][s.symbol];
+  }
   [[nodiscard]] Buffer finish_side() { return coder_.finish(); }
 
  private:

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "codec/fast_rans.h"
@@ -23,6 +24,15 @@ inline constexpr std::uint32_t kSeedContext = 17;
 /// How often each symbol occurs in each context, of kRansTotal.
 using StepFrequencies = std::array<std::array<std::uint16_t, kStepSymbols>, kStepContexts>;
 
+/// Weights of the six neighbours of a place, in 1/256.
+using PlaceWeights = std::array<std::int16_t, 6>;
+inline constexpr std::uint32_t kFastPredictors = 288;
+using FastWeights = std::array<PlaceWeights, kFastPredictors>;
+/// Six such weights keep sums over ways of up to 2^20 within 32 bits.
+inline constexpr int kMostPlaceWeight = 340;
+/// No step is for free, so that a stream of some bytes cannot hold any number of them.
+inline constexpr std::uint32_t kMostFrequentStep = kRansTotal - 16;
+
 /// StepFrequencies made ready for decoding.
 class FastStepTables {
  public:
@@ -33,11 +43,26 @@ class FastStepTables {
   std::vector<RansTable> tables_;
 };
 
-[[nodiscard]] const FastStepTables& built_in_step_tables();
+/// What the fast profile codes with: part of a mesh's CoderTables. Copies share what was made ready.
+class FastTables {
+ public:
+  /// The built-in ones.
+  FastTables();
+  /// REQUIRES: each context's frequencies add up to kRansTotal, and none is above kMostFrequentStep.
+  FastTables(const StepFrequencies& steps, const FastWeights& weights);
 
-/// Weights of the six neighbours of a place, in 1/256.
-using PlaceWeights = std::array<std::int16_t, 6>;
-inline constexpr std::uint32_t kFastPredictors = 288;
-[[nodiscard]] const std::array<PlaceWeights, kFastPredictors>& built_in_place_weights();
+  [[nodiscard]] const StepFrequencies& steps() const { return steps_; }
+  [[nodiscard]] const FastWeights& weights() const { return weights_; }
+  [[nodiscard]] const FastStepTables& step_tables() const { return *ready_; }
+
+  friend bool operator==(const FastTables& a, const FastTables& b) {
+    return a.steps_ == b.steps_ && a.weights_ == b.weights_;
+  }
+
+ private:
+  StepFrequencies steps_;
+  FastWeights weights_;
+  std::shared_ptr<const FastStepTables> ready_;
+};
 
 }  // namespace ramcdb::codec
