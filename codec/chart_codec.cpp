@@ -7,6 +7,7 @@
 
 #include "codec/chart_header.h"
 #include "codec/dense_coder.h"
+#include "codec/fast_coder.h"
 #include "codec/raw_chart.h"
 
 namespace ramcdb::codec {
@@ -77,6 +78,11 @@ DenseContext dense_context(std::span<const LatticePoint> border, std::span<const
   return context;
 }
 
+FastContext fast_context(std::span<const LatticePoint> border, std::span<const std::uint32_t> loop_sizes,
+                         const ChartHeader& header, const CoderTables& tables) {
+  return {border, loop_sizes, header.counts, header.box, &tables};
+}
+
 // ---- encoding ----
 
 void require_chart(const Chart& chart) {
@@ -130,6 +136,19 @@ bool decodes_to_itself(EncodedChart& encoded, std::uint32_t border, const CoderT
   }
 }
 
+/// What a coder wrote, as a blob that was decoded again. Nothing when that failed, or when there is no stream.
+template <class Stream>
+std::optional<EncodedChart> verified(const Chart& chart, const ChartHeader& header, std::optional<Stream> stream,
+                                     const CoderTables& tables, const LatticeBox& range) {
+  if (!stream) return std::nullopt;
+  Chart decoded{chart.loop_sizes, std::move(stream->coded.positions), std::move(stream->coded.faces)};
+  EncodedChart encoded = assemble(header, std::move(decoded), stream->bytes, tables, range);
+  encoded.source_vertex = std::move(stream->source_vertex);
+  encoded.source_corner = std::move(stream->source_corner);
+  if (!decodes_to_itself(encoded, chart.border_count(), tables, range)) return std::nullopt;
+  return encoded;
+}
+
 /// Whether coding coordinates by those of neighbours may pay. On scans that are dense on their lattice a fifth of them
 /// coincides, too, by chance: that costs encoding twice, but no bits.
 bool looks_aligned(const DenseStream& stream, ChartCounts counts) {
@@ -140,26 +159,24 @@ std::optional<EncodedChart> encode_densely(const Chart& chart, ChartHeader heade
                                            const LatticeBox& range) {
   header.coding = ChartCoding::dense;
   header.edge_exponent = mean_edge_exponent(chart);
-  const auto border = chart.border_count();
-  const auto coded = [&] {
-    return encode_dense(chart,
-                        dense_context(std::span(chart.positions).first(border), chart.loop_sizes, header, tables));
-  };
+  const auto border = std::span(chart.positions).first(chart.border_count());
+  const auto coded = [&] { return encode_dense(chart, dense_context(border, chart.loop_sizes, header, tables)); };
   std::optional<DenseStream> stream = coded();
-  if (!stream) return std::nullopt;
-  if (looks_aligned(*stream, header.counts)) {
+  if (stream && looks_aligned(*stream, header.counts)) {
     header.aligned = true;
-    if (std::optional<DenseStream> aligned = coded(); aligned && aligned->bytes.size() < stream->bytes.size())
-      stream = std::move(aligned);
-    else
-      header.aligned = false;
+    std::optional<DenseStream> aligned = coded();
+    header.aligned = aligned && aligned->bytes.size() < stream->bytes.size();
+    if (header.aligned) stream = std::move(aligned);
   }
-  Chart decoded{chart.loop_sizes, std::move(stream->coded.positions), std::move(stream->coded.faces)};
-  EncodedChart encoded = assemble(header, std::move(decoded), stream->bytes, tables, range);
-  encoded.source_vertex = std::move(stream->source_vertex);
-  encoded.source_corner = std::move(stream->source_corner);
-  if (!decodes_to_itself(encoded, border, tables, range)) return std::nullopt;
-  return encoded;
+  return verified(chart, header, std::move(stream), tables, range);
+}
+
+std::optional<EncodedChart> encode_quickly(const Chart& chart, ChartHeader header, const CoderTables& tables,
+                                           const LatticeBox& range) {
+  header.coding = ChartCoding::fast;
+  const auto border = std::span(chart.positions).first(chart.border_count());
+  return verified(chart, header, encode_fast(chart, fast_context(border, chart.loop_sizes, header, tables)), tables,
+                  range);
 }
 
 EncodedChart encode_rawly(const Chart& chart, ChartHeader header, const CoderTables& tables, const LatticeBox& range) {
@@ -177,16 +194,18 @@ EncodedChart encode_rawly(const Chart& chart, ChartHeader header, const CoderTab
 }  // namespace
 
 EncodedChart encode_chart(const Chart& chart, Profile profile, const CoderTables& tables, const LatticeBox& range) {
-  if (profile != Profile::dense) throw Error(Errc::invalid_argument, "an unknown chart coding profile");
+  if (profile != Profile::dense && profile != Profile::fast)
+    throw Error(Errc::invalid_argument, "an unknown chart coding profile");
   require_chart(chart);
   require_range(range, Errc::invalid_argument);
   const ChartHeader header = header_of(chart, chart.border_count(), range);
-  std::optional<EncodedChart> dense = encode_densely(chart, header, tables, range);
+  std::optional<EncodedChart> coded = profile == Profile::dense ? encode_densely(chart, header, tables, range)
+                                                                : encode_quickly(chart, header, tables, range);
   // Raw coding takes a byte per number at least; mostly that settles it.
   const std::size_t least_raw = 3 * (std::size_t{header.counts.inner_vertices} + header.counts.faces);
-  if (dense && dense->blob.size() <= least_raw) return *std::move(dense);
+  if (coded && coded->blob.size() <= least_raw) return *std::move(coded);
   EncodedChart raw = encode_rawly(chart, header, tables, range);
-  return dense && dense->blob.size() <= raw.blob.size() ? *std::move(dense) : std::move(raw);
+  return coded && coded->blob.size() <= raw.blob.size() ? *std::move(coded) : std::move(raw);
 }
 
 // ---- decoding ----
@@ -229,6 +248,11 @@ DecodedChart decode_chart(Bytes blob, std::span<const LatticePoint> border, std:
     decoded.chart.positions = std::move(dense.positions);
     decoded.chart.faces = std::move(dense.faces);
     decoded.cost = blob_cost(blob.size(), dense.connectivity_cost, dense.geometry_cost);
+  } else if (header.coding == ChartCoding::fast) {
+    FastChart fast = decode_fast(reader.rest(), fast_context(border, loop_sizes, header, tables));
+    decoded.chart.positions = std::move(fast.positions);
+    decoded.chart.faces = std::move(fast.faces);
+    decoded.cost = blob_cost(blob.size(), fast.connectivity_cost, fast.geometry_cost);
   } else {
     RawContent raw = decode_raw(reader, border, header.counts, header.box);
     decoded.cost = raw_cost(blob.size(), payload.size(), raw.positions, border.size(), header.box.lo);

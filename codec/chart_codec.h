@@ -9,11 +9,11 @@
 
 namespace ramcdb::codec {
 
-/// What a chart is coded with unless it does not pay. (A second profile, `fast`, gets number 2.)
-enum class Profile : std::uint8_t { dense = 1 };
+/// What a chart is coded with unless it does not pay: `dense` for size, `fast` for decoding speed.
+enum class Profile : std::uint8_t { dense = 1, fast = 2 };
 
 /// How a chart blob was coded: the second byte of the blob.
-enum class ChartCoding : std::uint8_t { raw = 1, dense = 2 };
+enum class ChartCoding : std::uint8_t { raw = 1, dense = 2, fast = 3 };
 
 /// Where the bits of a chart blob went, in 1/256 bit, so that sums over charts stay exact. Encoder and decoder count
 /// the same. header + connectivity + geometry = 8 * 256 * blob size.

@@ -95,7 +95,7 @@ ChartHeader take_chart_header(ByteReader& reader, const LatticeBox& range) {
   }
   ChartHeader header;
   const std::uint8_t coding = reader.byte();
-  if (coding != static_cast<std::uint8_t>(ChartCoding::raw) && coding != static_cast<std::uint8_t>(ChartCoding::dense))
+  if (coding < static_cast<std::uint8_t>(ChartCoding::raw) || coding > static_cast<std::uint8_t>(ChartCoding::fast))
     reader.fail("is coded in no known way");
   header.coding = static_cast<ChartCoding>(coding);
   const std::uint8_t flags = reader.byte();

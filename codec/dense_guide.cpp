@@ -21,14 +21,6 @@ std::uint32_t ChartGuide::begin_fan(std::uint32_t before_pivot, std::uint32_t pi
   return inside;
 }
 
-/// The node whose open corner at the apex the face lies in: the one whose edge ends the apex's fan.
-std::uint32_t ChartGuide::apex_node(const DenseFront& front) const {
-  for (std::uint32_t out = HalfEdges::prev(at_);; out = HalfEdges::next(edges_.twin(out))) {
-    const std::uint32_t node = node_of_edge_[out];
-    if (node != kNone && front[node].live != kNone && edge_of_node_[node] == out) return node;
-  }
-}
-
 void ChartGuide::face_opened(std::uint32_t current, std::uint32_t new_node) {
   face_edges_.push_back(at_);
   set_edge(current, edges_.twin(HalfEdges::prev(at_)));

@@ -33,12 +33,25 @@ class ChartGuide {
   /// A loop's node for border vertex `node`, of the same number.
   void on_border(std::uint32_t node) { set_edge(node, edges_.at_border(node)); }
 
+  /// Turns to the face at the open side of a node's edge.
+  void turn_to(std::uint32_t node) { at_ = edge_of_node_[node]; }
   /// Turns to the open corner between two nodes; returns the number of edges inside it.
   std::uint32_t begin_fan(std::uint32_t before_pivot, std::uint32_t pivot);
   /// About the third vertex of the face at hand.
   [[nodiscard]] bool apex_is_known() const { return local_[apex_vertex()] != kNone; }
   [[nodiscard]] LatticePoint apex() const { return chart_.positions[apex_vertex()]; }
-  [[nodiscard]] std::uint32_t apex_node(const DenseFront& front) const;
+  [[nodiscard]] std::uint32_t apex_node(const DenseFront& front) const {
+    return apex_corner([&](std::uint32_t node) { return front[node].live != kNone; }).node;
+  }
+  /// The corner of the front that the face at hand lies in with its third vertex.
+  struct Corner {
+    std::uint32_t node = kNone;
+    std::uint32_t faces_after = 0;  ///< of the corner, on the far side of the face
+  };
+  template <class IsLive>
+  [[nodiscard]] Corner apex_corner(const IsLive& is_live) const;
+  /// Of the chart.
+  [[nodiscard]] std::uint32_t apex_vertex() const { return edges_.origin(HalfEdges::prev(at_)); }
   void apex_placed(std::uint32_t vertex) { place(apex_vertex(), vertex); }
   /// The face at hand was decoded: its edge from the apex to the pivot is that of `new_node`, the one from `current` to
   /// the apex that of `current`. Goes on to the next face of the fan.
@@ -58,7 +71,6 @@ class ChartGuide {
   [[nodiscard]] const std::vector<std::uint32_t>& source_faces() const { return face_edges_; }
 
  private:
-  [[nodiscard]] std::uint32_t apex_vertex() const { return edges_.origin(HalfEdges::prev(at_)); }
   void place(std::uint32_t chart_vertex, std::uint32_t vertex);
   void set_edge(std::uint32_t node, std::uint32_t half_edge);
   void find_seeds();
@@ -77,5 +89,15 @@ class ChartGuide {
   std::vector<std::uint32_t> isolated_;  ///< last one first
   bool isolated_known_ = false;
 };
+
+/// Its node is the one whose edge ends the apex's fan.
+template <class IsLive>
+ChartGuide::Corner ChartGuide::apex_corner(const IsLive& is_live) const {
+  Corner corner;
+  for (std::uint32_t out = HalfEdges::prev(at_);; out = HalfEdges::next(edges_.twin(out)), ++corner.faces_after) {
+    corner.node = node_of_edge_[out];
+    if (corner.node != kNone && is_live(corner.node) && edge_of_node_[corner.node] == out) return corner;
+  }
+}
 
 }  // namespace ramcdb::codec

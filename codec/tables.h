@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "codec/fast_tables.h"
 #include "ramcdb/bytes.h"
 
 namespace ramcdb::codec {
@@ -22,6 +23,7 @@ inline constexpr std::size_t kPlaneClasses = 16;
 struct CoderTables {
   std::array<FanWeights, kFanClasses> fan;
   std::array<PlaneWeights, kPlaneClasses> plane;
+  FastTables fast;
 
   CoderTables();
   friend bool operator==(const CoderTables&, const CoderTables&) = default;

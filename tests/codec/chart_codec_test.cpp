@@ -18,10 +18,14 @@ using testing::NamedChart;
 
 const CoderTables kTables;
 
-EncodedChart encode(const Chart& chart, const LatticeBox& range) {
-  return encode_chart(chart, Profile::dense, kTables, range);
+constexpr Profile kProfiles[] = {Profile::dense, Profile::fast};
+
+EncodedChart encode(const Chart& chart, const LatticeBox& range, Profile profile = Profile::dense) {
+  return encode_chart(chart, profile, kTables, range);
 }
-EncodedChart encode(const Chart& chart) { return encode(chart, testing::box_of(chart)); }
+EncodedChart encode(const Chart& chart, Profile profile = Profile::dense) {
+  return encode(chart, testing::box_of(chart), profile);
+}
 
 DecodedChart decode(const EncodedChart& encoded, const LatticeBox& range) {
   const Chart& chart = encoded.decoded;
@@ -66,8 +70,8 @@ void expect_sources(const Chart& chart, const EncodedChart& encoded) {
   }
 }
 
-void expect_round_trip(const Chart& chart, const LatticeBox& range) {
-  const EncodedChart encoded = encode(chart, range);
+void expect_round_trip(const Chart& chart, const LatticeBox& range, Profile profile) {
+  const EncodedChart encoded = encode(chart, range, profile);
   expect_same_surface(chart, encoded.decoded, encoded.source_vertex);
   expect_sources(chart, encoded);
 
@@ -78,9 +82,13 @@ void expect_round_trip(const Chart& chart, const LatticeBox& range) {
   const ChartCost& cost = encoded.cost;
   EXPECT_EQ(cost.header + cost.connectivity + cost.geometry, 8 * 256 * encoded.blob.size());
 
-  const EncodedChart again = encode(encoded.decoded, range);
+  const EncodedChart again = encode(encoded.decoded, range, profile);
   EXPECT_EQ(again.blob, encoded.blob);
   EXPECT_EQ(again.decoded, encoded.decoded);
+}
+
+void expect_round_trip(const Chart& chart, const LatticeBox& range) {
+  for (const Profile profile : kProfiles) expect_round_trip(chart, range, profile);
 }
 
 TEST(ChartCodec, ManifoldChartsComeBackAndReencodeToTheSameBytes) {
@@ -94,7 +102,7 @@ TEST(ChartCodec, BrokenChartsComeBackToo) {
   for (const auto& [name, chart] : testing::broken_charts()) {
     SCOPED_TRACE(name);
     expect_round_trip(chart, testing::box_of(chart));
-    EXPECT_EQ(encode(chart).coding, ChartCoding::raw);
+    for (const Profile profile : kProfiles) EXPECT_EQ(encode(chart, profile).coding, ChartCoding::raw);
   }
 }
 
@@ -106,10 +114,12 @@ TEST(ChartCodec, TriangleSoupsComeBack) {
   }
 }
 
-TEST(ChartCodec, LargeManifoldChartsAreCodedDensely) {
+TEST(ChartCodec, LargeManifoldChartsAreCodedByProfile) {
   for (const auto& [name, chart] : testing::manifold_charts()) {
     const bool smooth = name.find("anywhere") == std::string::npos;
-    EXPECT_TRUE(encode(chart).coding == ChartCoding::dense || chart.faces.size() <= 100 || !smooth) << name;
+    if (chart.faces.size() <= 100 || !smooth) continue;
+    EXPECT_EQ(encode(chart).coding, ChartCoding::dense) << name;
+    EXPECT_EQ(encode(chart, Profile::fast).coding, ChartCoding::fast) << name;
   }
 }
 
@@ -117,7 +127,8 @@ TEST(ChartCodec, BytesDoNotDependOnTheNumberingOfVerticesAndFaces) {
   for (const auto& [name, chart] : testing::manifold_charts()) {
     const std::set<LatticePoint> places(chart.positions.begin(), chart.positions.end());
     if (places.size() < chart.positions.size()) continue;  // then the numbering does tell vertices apart
-    EXPECT_EQ(encode(testing::shuffled(chart, 99)).blob, encode(chart).blob) << name;
+    for (const Profile profile : kProfiles)
+      EXPECT_EQ(encode(testing::shuffled(chart, 99), profile).blob, encode(chart, profile).blob) << name;
   }
 }
 
@@ -130,6 +141,15 @@ TEST(ChartCodec, VerticesOutsideOfTheRangeBringTheirOwnBox) {
     const bool has_inner = chart.positions.size() > chart.border_count();
     EXPECT_EQ(encode(chart, LatticeBox{}).expanded_range, has_inner);
     EXPECT_FALSE(encode(chart).expanded_range);
+  }
+}
+
+TEST(ChartCodec, ProfilesDifferInOrderOnly) {
+  for (const auto& [name, chart] : testing::manifold_charts()) {
+    const std::set<LatticePoint> places(chart.positions.begin(), chart.positions.end());
+    if (places.size() < chart.positions.size()) continue;
+    EXPECT_EQ(testing::normalized(encode(chart, Profile::fast).decoded), testing::normalized(encode(chart).decoded))
+        << name;
   }
 }
 
@@ -190,6 +210,7 @@ TEST(ChartCodec, RefusesWhatIsNoChart) {
   EXPECT_EQ(code_of(bad), Errc::limit_exceeded);
   EXPECT_EQ(code_of(good, {{std::numeric_limits<std::int32_t>::min(), 0, 0}, {0, 0, 0}}), Errc::invalid_argument);
   EXPECT_EQ(code_of(good), Errc::cancelled);
+  EXPECT_THROW((void)encode(good, static_cast<Profile>(3)), Error);
 }
 
 TEST(ChartCodec, AlignedChartsTakeCoordinatesFromTheirNeighbours) {

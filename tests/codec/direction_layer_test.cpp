@@ -13,7 +13,7 @@ namespace ramcdb::codec {
 namespace {
 
 constexpr std::int32_t kUnit = kOctahedronUnit;
-constexpr AttributeOf kKinds[] = {AttributeOf::vertex, AttributeOf::corner, AttributeOf::face};
+constexpr AttributeOf kOwners[] = {AttributeOf::vertex, AttributeOf::corner, AttributeOf::face};
 
 LayerShape directions_of(AttributeOf of) { return {of, 2, kDirectionBits, ValueKind::direction}; }
 
@@ -87,7 +87,7 @@ TEST(DirectionLayer, ComesBackOnEveryChart) {
   for (testing::NamedChart& chart : testing::broken_charts()) charts.push_back(std::move(chart));
   for (const auto& [name, chart] : charts) {
     const LayerOrder order(chart);
-    for (const AttributeOf of : kKinds)
+    for (const AttributeOf of : kOwners)
       for (const unsigned odd : {0U, 20U, 100U}) {
         const LayerValues values = sample(chart, of, odd, odd + 1);
         const Buffer blob = encode_layer(values, directions_of(of), chart, order);
@@ -116,7 +116,7 @@ TEST(DirectionLayer, TakesFewerBitsThanThreeNumbers) {
 TEST(DirectionLayer, RefusesWhatIsNoDirection) {
   const Chart chart = testing::cut(testing::torus(9, 6, 900));
   const LayerOrder order(chart);
-  for (const AttributeOf of : kKinds) {
+  for (const AttributeOf of : kOwners) {
     const LayerShape shape = directions_of(of);
     const auto decode = [&](Bytes b) { (void)decode_layer(b, shape, chart, order); };
     LayerValues values = sample(chart, of, 20, 3);

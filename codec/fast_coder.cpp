@@ -1,0 +1,95 @@
+#include "codec/fast_coder.h"
+
+#include "codec/fast_predictor.h"
+#include "codec/fast_steps.h"
+#include "codec/fast_walk.h"
+#include "codec/varint.h"
+
+namespace ramcdb::codec {
+
+namespace {
+
+FastPosition position_of(LatticePoint p) {
+  return {static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y), static_cast<std::uint32_t>(p.z), 0};
+}
+
+}  // namespace
+
+// ---- encoding ----
+
+std::optional<FastStream> encode_fast(const Chart& chart, const FastContext& context) {
+  const std::optional<HalfEdges> edges = HalfEdges::of(chart);
+  if (!edges) return std::nullopt;
+  const auto border = static_cast<std::uint32_t>(context.border.size());
+  FastStepWriter steps(chart, *edges);
+  const FastOutline outline{context.loop_sizes, context.counts, context.counts.faces};
+  FastStream stream;
+  FastPlan plan = FastWalk(steps, outline).run();
+  stream.source_vertex = steps.guide().source_vertices();
+  stream.source_corner = steps.guide().source_faces();
+
+  std::vector<FastPosition> positions;
+  for (const std::uint32_t v : stream.source_vertex) {
+    stream.coded.positions.push_back(chart.positions[v]);
+    positions.push_back(position_of(chart.positions[v]));
+  }
+  const bool wide = needs_wide_sums(context.box, context.border);
+  const auto residuals = misses(plan, border, positions, context.box.lo, context.tables->fast.weights(), wide);
+
+  const Buffer side = steps.finish_side();
+  put_varint(stream.bytes, steps.joins());
+  put_varint(stream.bytes, side.size());
+  stream.bytes.insert(stream.bytes.end(), side.begin(), side.end());
+  for (const Buffer& part :
+       {steps.finish_symbols(context.tables->fast.step_tables()), encode_residuals(plan, border, residuals)})
+    stream.bytes.insert(stream.bytes.end(), part.begin(), part.end());
+  stream.coded.faces = std::move(plan.faces);
+  return stream;
+}
+
+// ---- decoding ----
+
+namespace {
+
+/// A vertex takes more than 1/16 bit (FastScales leaves no number for free), a face belongs to a vertex or a join.
+void check_plausible(const ByteReader& reader, const FastContext& context, std::uint64_t joins) {
+  const std::uint64_t most = 256 * (std::uint64_t{reader.rest().size()} + 64);
+  const std::uint64_t vertices = context.border.size() + context.counts.inner_vertices;
+  if (context.counts.inner_vertices > most || joins > most) reader.fail("declares more than it can hold");
+  if (context.counts.faces > 2 * (vertices + joins)) reader.fail("declares more faces than it can have");
+}
+
+}  // namespace
+
+FastChart decode_fast(Bytes bytes, const FastContext& context) {
+  ByteReader reader(bytes, "chart's stream");
+  const auto border = static_cast<std::uint32_t>(context.border.size());
+  const std::uint32_t joins = reader.varint_up_to(kMaxFastJoins);
+  check_plausible(reader, context, joins);
+  const Bytes side = reader.take(reader.varint_up_to(~std::uint32_t{0}));
+  const RansDecoder state(reader.fixed32());
+  FastStepReader steps(side, state, WordReader(reader.rest()), context.tables->fast.step_tables());
+  FastPlan plan = FastWalk(steps, FastOutline{context.loop_sizes, context.counts, joins}).run();
+  if (plan.joins != joins) reader.fail("has fewer joins than it declares");
+  (void)reader.take(steps.finish());
+
+  FastChart chart;
+  chart.connectivity_cost = 2048 * std::uint64_t{bytes.size() - reader.rest().size()};
+  chart.geometry_cost = 2048 * std::uint64_t{reader.rest().size()};
+  const auto residuals = decode_residuals(reader.rest(), plan, border);
+  std::vector<FastPosition> positions(border + plan.places.size());
+  for (std::uint32_t v = 0; v < border; ++v) positions[v] = position_of(context.border[v]);
+  place_all(plan, border, residuals, context.box.lo, context.tables->fast.weights(),
+            needs_wide_sums(context.box, context.border), positions);
+  chart.positions.reserve(positions.size());
+  for (const FastPosition& p : positions)
+    chart.positions.push_back(
+        {static_cast<std::int32_t>(p[0]), static_cast<std::int32_t>(p[1]), static_cast<std::int32_t>(p[2])});
+  for (std::size_t v = border; v < chart.positions.size(); ++v)
+    if (!context.box.contains(chart.positions[v]))
+      throw Error(Errc::corrupt, "a chart's vertex lies outside of the chart's range");
+  chart.faces = std::move(plan.faces);
+  return chart;
+}
+
+}  // namespace ramcdb::codec

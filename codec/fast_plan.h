@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "codec/dense_surface.h"
+#include "ramcdb/chart.h"
+
+namespace ramcdb::codec {
+
+/// Around a new vertex, as connectivity knows it: the face (before, pivot, new) and what lies next to it. A vertex that
+/// is missing is named by `pivot` again, so that its way from the pivot is zero.
+struct FastPlace {
+  std::uint32_t pivot = 0;
+  /// before, next, behind the edge before-pivot, behind pivot-next, the vertex before `before`, behind that edge.
+  std::array<std::uint32_t, 6> around{};
+  std::uint16_t predictor = 0;  ///< class of weights, below kFastPredictors
+  std::uint16_t trust = 0;      ///< how many parallelograms there are, 0 to 3; kFastFree: no neighbours at all
+};
+
+inline constexpr std::uint16_t kFastFree = 4;
+
+/// No chart splits more corners.
+inline constexpr std::uint32_t kMaxFastJoins = 1u << 20;
+
+/// What the connectivity of a chart says, before any position is known: its faces, and where each inner vertex comes
+/// to lie. Vertex border + i has place i.
+struct FastPlan {
+  std::vector<Triangle> faces;
+  std::vector<FastPlace> places;
+  std::uint32_t joins = 0;
+};
+
+/// A node of the front: a corner of the surface that is still open, between the edges to prev and to next.
+struct FastNode {
+  std::uint32_t vertex = 0;
+  std::uint32_t prev = 0;
+  std::uint32_t next = 0;
+  std::uint32_t behind = kNone;  ///< third vertex of the known face at the edge to next
+  std::uint32_t open = 0;        ///< faces that the corner still takes; 0: the node has left the front
+  std::uint32_t degree = 0;      ///< faces around the vertex; 0: on the border
+};
+
+}  // namespace ramcdb::codec

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "codec/fast_plan.h"
+#include "codec/fast_residuals.h"
+#include "codec/fast_tables.h"
+
+/// Positions from their neighbours, as one run over all places. With P = pivot, a vertex is guessed at
+///
+///   P + floor((w1 (q1 - P) + ... + w6 (q6 - P) + 128) / 256)
+///
+/// where q1 ... q6 are the vertices around the place and w the weights of its predictor. All of it wraps around at
+/// 2^32, in both directions alike, so no lattice is too wide for it; but when edges are so long that products would
+/// wrap, the sum is made in 64 bits.
+namespace ramcdb::codec {
+
+/// A position with room for vector instructions.
+using FastPosition = std::array<std::uint32_t, 4>;
+
+/// Whether positions within `box` and `border` may be too far apart for sums of 32 bits.
+[[nodiscard]] bool needs_wide_sums(const LatticeBox& box, std::span<const LatticePoint> border);
+
+/// How far the guesses for all places miss `positions`. `origin`: what a vertex without any before it is guessed at.
+[[nodiscard]] std::vector<FastResidual> misses(const FastPlan& plan, std::uint32_t border,
+                                               const std::vector<FastPosition>& positions, LatticePoint origin,
+                                               const FastWeights& weights, bool wide);
+
+/// The other way round: completes `positions`, of which the border is known.
+void place_all(const FastPlan& plan, std::uint32_t border, const std::vector<FastResidual>& residuals,
+               LatticePoint origin, const FastWeights& weights, bool wide, std::vector<FastPosition>& positions);
+
+}  // namespace ramcdb::codec

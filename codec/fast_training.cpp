@@ -1,0 +1,135 @@
+#include "codec/fast_training.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "codec/fast_steps.h"
+#include "codec/fast_walk.h"
+
+namespace ramcdb::codec {
+
+namespace {
+
+constexpr int kPasses = 6;
+/// A class with fewer vertices keeps the weights that it started from.
+constexpr std::uint64_t kEnough = 24;
+/// How much the weights at the start are worth, in vertices.
+constexpr double kPull = 12;
+/// Counts of each symbol that the frequencies at the start are worth, in all.
+constexpr std::uint64_t kSymbolPull = 200;
+
+/// The normal equations of one class: matrix, then right side.
+using Equations = std::array<std::array<double, 7>, 6>;
+
+/// Gaussian elimination with the largest pivot; the matrix is positive definite.
+std::array<double, 6> solve(Equations e) {
+  for (std::size_t column = 0; column < 6; ++column) {
+    std::size_t best = column;
+    for (std::size_t row = column + 1; row < 6; ++row)
+      if (std::abs(e[row][column]) > std::abs(e[best][column])) best = row;
+    std::swap(e[column], e[best]);
+    for (std::size_t row = column + 1; row < 6; ++row) {
+      const double factor = e[row][column] / e[column][column];
+      for (std::size_t k = column; k < 7; ++k) e[row][k] -= factor * e[column][k];
+    }
+  }
+  std::array<double, 6> x{};
+  for (std::size_t row = 6; row-- > 0;) {
+    double sum = e[row][6];
+    for (std::size_t k = row + 1; k < 6; ++k) sum -= e[row][k] * x[k];
+    x[row] = sum / e[row][row];
+  }
+  return x;
+}
+
+}  // namespace
+
+void FastTrainer::add(const Chart& chart) {
+  const std::optional<HalfEdges> edges = HalfEdges::of(chart);
+  if (!edges) return;
+  const std::uint32_t border = chart.border_count();
+  const auto inner = static_cast<std::uint32_t>(chart.positions.size()) - border;
+  const auto faces = static_cast<std::uint32_t>(chart.faces.size());
+  FastStepWriter steps(chart, *edges);
+  const FastPlan plan = FastWalk(steps, FastOutline{chart.loop_sizes, {inner, faces}, faces}).run();
+  steps.count_symbols(symbols_);
+  const auto at = [&](std::uint32_t vertex) { return chart.positions[steps.guide().source_vertices()[vertex]]; };
+  for (std::uint32_t i = 0; i < inner; ++i) {
+    const FastPlace& place = plan.places[i];
+    if (place.trust == kFastFree) continue;
+    const LatticePoint pivot = at(place.pivot), vertex = at(border + i);
+    Sample& sample = samples_.emplace_back();
+    sample.predictor = place.predictor;
+    for (int a = 0; a < 3; ++a) {
+      const auto axis = static_cast<std::size_t>(a);
+      sample.target[axis] = static_cast<float>(std::int64_t{vertex[a]} - pivot[a]);
+      for (std::size_t k = 0; k < 6; ++k)
+        sample.around[k][axis] = static_cast<float>(std::int64_t{at(place.around[k])[a]} - pivot[a]);
+    }
+  }
+}
+
+FastTables FastTrainer::learn() const { return FastTables(learn_steps(), learn_weights()); }
+
+StepFrequencies FastTrainer::learn_steps() const {
+  StepFrequencies frequencies = start_.steps();
+  for (std::size_t c = 0; c < kStepContexts; ++c) {
+    std::array<std::uint64_t, kStepSymbols> weights{};
+    for (std::size_t s = 0; s < kStepSymbols; ++s)
+      weights[s] = symbols_[c][s] * kRansTotal + kSymbolPull * start_.steps()[c][s];
+    const auto learnt = rans_frequencies(weights, kMostFrequentStep);
+    std::copy_n(learnt.begin(), kStepSymbols, frequencies[c].begin());
+  }
+  return frequencies;
+}
+
+FastWeights FastTrainer::learn_weights() const {
+  std::array<std::array<double, 6>, kFastPredictors> weights{};
+  std::array<std::uint64_t, kFastPredictors> count{};
+  for (std::size_t c = 0; c < kFastPredictors; ++c)
+    for (std::size_t k = 0; k < 6; ++k) weights[c][k] = start_.weights()[c][k] / 256.0;
+  for (const Sample& sample : samples_) ++count[sample.predictor];
+
+  for (int pass = 0; pass < kPasses; ++pass) {
+    std::vector<Equations> equations(kFastPredictors);
+    for (const Sample& sample : samples_) {
+      const std::array<double, 6>& w = weights[sample.predictor];
+      double missed = 0;
+      for (std::size_t a = 0; a < 3; ++a) {
+        double miss = sample.target[a];
+        for (std::size_t k = 0; k < 6; ++k) miss -= w[k] * static_cast<double>(sample.around[k][a]);
+        missed += miss * miss;
+      }
+      const double share = 1 / (missed + 3);
+      Equations& e = equations[sample.predictor];
+      for (std::size_t row = 0; row < 6; ++row)
+        for (std::size_t a = 0; a < 3; ++a) {
+          const double scaled = share * static_cast<double>(sample.around[row][a]);
+          for (std::size_t k = 0; k < 6; ++k) e[row][k] += scaled * static_cast<double>(sample.around[k][a]);
+          e[row][6] += scaled * static_cast<double>(sample.target[a]);
+        }
+    }
+    for (std::size_t c = 0; c < kFastPredictors; ++c) {
+      if (count[c] < kEnough) continue;
+      double trace = 1e-9;
+      for (std::size_t k = 0; k < 6; ++k) trace += equations[c][k][k];
+      const double pull = kPull * trace / (6 * static_cast<double>(count[c]));
+      for (std::size_t k = 0; k < 6; ++k) {
+        equations[c][k][k] += pull;
+        equations[c][k][6] += pull * start_.weights()[c][k] / 256.0;
+      }
+      weights[c] = solve(equations[c]);
+    }
+  }
+
+  FastWeights rounded{};
+  for (std::size_t c = 0; c < kFastPredictors; ++c)
+    for (std::size_t k = 0; k < 6; ++k) {
+      const double clamped = std::clamp(256 * weights[c][k], -double{kMostPlaceWeight}, double{kMostPlaceWeight});
+      rounded[c][k] = static_cast<std::int16_t>(std::floor(clamped + 0.5));
+    }
+  return rounded;
+}
+
+}  // namespace ramcdb::codec

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "codec/fast_predictor.h"
+#include "codec/fast_tables.h"
+#include "ramcdb/chart.h"
+
+namespace ramcdb::codec {
+
+/// Learns the tables of the fast profile from the charts of a mesh. Equal charts in an equal order give equal tables on
+/// every machine.
+class FastTrainer {
+ public:
+  /// \param start what classes without enough samples keep, and what the others are drawn to
+  explicit FastTrainer(const FastTables& start) : start_(start) {}
+
+  /// Charts that the fast coder does not take teach nothing.
+  void add(const Chart& chart);
+
+  /// Weights by robust least squares (far misses count less), frequencies by counting.
+  [[nodiscard]] FastTables learn() const;
+
+ private:
+  /// A vertex: where it is and where its six neighbours are, as seen from the pivot.
+  struct Sample {
+    std::array<std::array<float, 3>, 6> around{};
+    std::array<float, 3> target{};
+    std::uint32_t predictor = 0;
+  };
+
+  [[nodiscard]] StepFrequencies learn_steps() const;
+  [[nodiscard]] FastWeights learn_weights() const;
+
+  FastTables start_;
+  std::vector<Sample> samples_;
+  std::array<std::array<std::uint64_t, kStepSymbols>, kStepContexts> symbols_{};
+};
+
+}  // namespace ramcdb::codec
