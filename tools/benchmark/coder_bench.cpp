@@ -1,16 +1,31 @@
 #include "tools/benchmark/coder_bench.h"
 
+#include <fmt/format.h>
+
+#include <atomic>
+#include <functional>
+#include <memory>
 #include <stdexcept>
-#include <vector>
+#include <thread>
 
 #include "chartify/wire_net_builder.h"
 #include "codec/chart_codec.h"
+#include "codec/dense_training.h"
+#include "codec/fast_training.h"
 #include "ramcdb/repository.h"
-#include "tools/benchmark/draco_peer.h"
+#include "tools/benchmark/peer.h"
 #include "tools/benchmark/timing.h"
 
 namespace ramcdb::benchmark {
 namespace {
+
+constexpr std::uint64_t kBlobOverhead = 8;
+
+struct ProfileName {
+  codec::Profile profile;
+  const char* name;
+};
+constexpr ProfileName kProfiles[] = {{codec::Profile::dense, "dense"}, {codec::Profile::fast, "fast"}};
 
 /// The mesh as the repository holds it: lattice points and faces.
 chartify::IndexedMesh read_back(const Snapshot& snapshot) {
@@ -18,82 +33,183 @@ chartify::IndexedMesh read_back(const Snapshot& snapshot) {
   return {std::move(region.points), std::move(region.faces)};
 }
 
-struct CodedCharts {
-  codec::CoderTables tables;
-  LatticeBox range;
-  std::vector<chartify::NetChart> charts;
-  std::vector<Buffer> blobs;
-
-  void encode() {
-    blobs.clear();
-    for (const auto& net_chart : charts)
-      blobs.push_back(codec::encode_chart(net_chart.chart, codec::Profile::dense, tables, range).blob);
-  }
-
-  void decode() const {
-    for (std::size_t c = 0; c < charts.size(); ++c) {
-      const Chart& chart = charts[c].chart;
-      const std::span border(chart.positions.data(), chart.border_count());
-      const auto decoded = codec::decode_chart(blobs[c], border, chart.loop_sizes, tables, range);
-      if (decoded.chart.faces.size() != chart.faces.size()) throw std::logic_error("a chart lost faces");
+/// Charts in one of our profiles.
+class OurCharts {
+ public:
+  OurCharts(const std::vector<chartify::NetChart>& charts, codec::Profile profile, const LatticeBox& range,
+            std::uint64_t vertices)
+      : charts_(charts), profile_(profile), range_(range), blobs_(charts.size()) {
+    if (profile == codec::Profile::dense) {
+      std::vector<const Chart*> all;
+      for (const auto& chart : charts) all.push_back(&chart.chart);
+      tables_ = codec::train_dense(all, vertices);
+    } else {
+      codec::FastTrainer trainer(tables_.fast);
+      for (const auto& chart : charts) trainer.add(chart.chart);
+      tables_.fast = trainer.learn();
     }
   }
-};
 
-class DracoRun {
- public:
-  DracoRun(const DracoMesh& mesh, int level) : mesh_(mesh), level_(level) {}
-
-  void round() {
-    encode_.push_back(seconds([&] { bytes_ = mesh_.encode(level_); }));
-    decode_.push_back(seconds([&] { faces_ = draco_decode(bytes_); }));
+  void encode() {
+    for (std::size_t c = 0; c < charts_.size(); ++c) {
+      codec::EncodedChart encoded = codec::encode_chart(charts_[c].chart, profile_, tables_, range_);
+      blobs_[c] = std::move(encoded.blob);
+    }
   }
-  [[nodiscard]] CoderFigures::Peer figures(double faces) const {
-    return {bytes_.size(), faces_, faces / median(encode_), faces / median(decode_)};
+
+  /// Returns the number of faces.
+  [[nodiscard]] std::size_t decode(unsigned threads = 1) const {
+    std::atomic<std::size_t> next{0}, faces{0};
+    const auto work = [&] {
+      for (std::size_t c = next++; c < charts_.size(); c = next++) faces += decode_chart(c).chart.faces.size();
+    };
+    std::vector<std::jthread> others;
+    for (unsigned t = 1; t < threads; ++t) others.emplace_back(work);
+    work();
+    others.clear();
+    return faces;
+  }
+
+  [[nodiscard]] Contestant sizes(const std::string& name, const MeshInfo& info) const {
+    Contestant result;
+    result.name = name;
+    for (std::size_t c = 0; c < charts_.size(); ++c) {
+      const codec::ChartCost cost = decode_chart(c).cost;
+      result.connectivity += cost.connectivity;
+      result.geometry += cost.geometry;
+      result.bytes += blobs_[c].size() + kBlobOverhead;
+    }
+    result.connectivity /= 2048;
+    result.geometry /= 2048;
+    result.index = result.bytes - result.connectivity - result.geometry + info.bytes.wire_net + info.bytes.tables;
+    if (profile_ != codec::Profile::dense) result.index += codec::encode_tables(tables_).size();
+    result.wires = info.bytes.wires;
+    result.bytes = result.connectivity + result.geometry + result.index + result.wires;
+    return result;
   }
 
  private:
-  const DracoMesh& mesh_;
-  int level_;
-  std::vector<char> bytes_;
-  std::size_t faces_ = 0;
-  std::vector<double> encode_, decode_;
+  [[nodiscard]] codec::DecodedChart decode_chart(std::size_t c) const {
+    const Chart& chart = charts_[c].chart;
+    const std::span border(chart.positions.data(), chart.border_count());
+    return codec::decode_chart(blobs_[c], border, chart.loop_sizes, tables_, range_);
+  }
+
+  const std::vector<chartify::NetChart>& charts_;
+  codec::Profile profile_;
+  LatticeBox range_;
+  codec::CoderTables tables_;
+  std::vector<Buffer> blobs_;
 };
+
+/// What a contestant does in a round, and how long it took.
+struct Turn {
+  std::function<void()> encode, decode, decode_all;  ///< the last may be missing
+  std::vector<double> encode_seconds{}, decode_seconds{}, decode_all_seconds{};
+
+  void take() {
+    encode_seconds.push_back(seconds(encode));
+    decode_seconds.push_back(seconds(decode));
+    if (decode_all) decode_all_seconds.push_back(seconds(decode_all));
+  }
+};
+
+/// A mesh cut into charts of some size, in a repository of its own.
+struct CutMesh {
+  MeshInfo info;
+  chartify::IndexedMesh mesh;
+  std::vector<chartify::NetChart> charts;
+  LatticeBox range;
+
+  CutMesh(const std::filesystem::path& file, const std::filesystem::path& folder, unsigned bits, std::uint32_t faces) {
+    Repository::create(folder);
+    auto repository = Repository::open(folder);
+    ImportOptions options;
+    options.bits = bits;
+    options.chart_faces = faces;
+    info = repository.import(file, options).info;
+    mesh = chartify::canonical_order(read_back(repository.snapshot())).mesh;
+    chartify::Options cut;
+    cut.target_faces = faces;
+    charts = chartify::build_wire_net(mesh, chartify::chartify(mesh, cut)).charts;
+    for (const LatticePoint p : mesh.positions) range.add(p);
+  }
+};
+
+/// A chart from the middle of the mesh, each time through a repository that is opened for it.
+void measure_access(const std::filesystem::path& folder, CoderFigures& figures, unsigned rounds) {
+  std::vector<double> times;
+  for (unsigned round = 0; round < rounds; ++round)
+    times.push_back(seconds([&] {
+      const auto repository = Repository::open(folder);
+      const Snapshot snapshot = repository.snapshot();
+      ReadCost cost;
+      const auto charts = static_cast<std::uint32_t>(snapshot.info().charts);
+      (void)snapshot.read({ChartId(1 + (charts / 2 + round) % charts)}, 1, &cost);
+      figures.chart_bytes = static_cast<double>(cost.bytes);
+      figures.chart_blobs = static_cast<double>(cost.blobs);
+    }));
+  figures.chart_seconds = median(times);
+}
 
 }  // namespace
 
-CoderFigures measure_coder(const std::filesystem::path& file, const std::filesystem::path& scratch, unsigned bits,
-                           unsigned rounds) {
-  Repository::create(scratch);
-  auto repository = Repository::open(scratch);
-  ImportOptions options;
-  options.bits = bits;
+const Contestant& CoderFigures::find(const std::string& name) const {
+  for (const Contestant& contestant : contestants)
+    if (contestant.name == name) return contestant;
+  throw std::logic_error("no contestant " + name);
+}
+
+CoderFigures measure_coder(const std::filesystem::path& file, const std::filesystem::path& scratch,
+                           const CoderOptions& options) {
   CoderFigures figures;
-  figures.info = repository.import(file, options).info;
-  figures.mesh = figures.info.mesh;
-
-  const auto canonical = chartify::canonical_order(read_back(repository.snapshot()));
-  const chartify::IndexedMesh& mesh = canonical.mesh;
-  chartify::Charts cut;
-  const auto faces = static_cast<double>(mesh.faces.size());
-  figures.cut = faces / seconds([&] { cut = chartify::chartify(mesh, {}); });
-  CodedCharts ours;
-  ours.charts = chartify::build_wire_net(mesh, cut).charts;
-  for (const LatticePoint p : mesh.positions) ours.range.add(p);
-
-  const DracoMesh peer(mesh);
-  DracoRun draco10(peer, 10), draco7(peer, 7);
-  std::vector<double> encode, decode;
-  for (unsigned round = 0; round < rounds; ++round) {
-    encode.push_back(seconds([&] { ours.encode(); }));
-    decode.push_back(seconds([&] { ours.decode(); }));
-    draco10.round();
-    draco7.round();
+  std::vector<std::unique_ptr<CutMesh>> cuts;
+  std::vector<std::unique_ptr<OurCharts>> ours;
+  std::vector<std::unique_ptr<Peer>> peers;
+  std::vector<Buffer> peer_bytes(8);
+  std::vector<Turn> turns;
+  std::vector<std::size_t> faces_back(32);
+  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+  for (const std::uint32_t faces : options.chart_faces) {
+    cuts.push_back(std::make_unique<CutMesh>(file, scratch / std::to_string(faces), options.bits, faces));
+    const CutMesh& cut = *cuts.back();
+    for (const ProfileName& profile : kProfiles) {
+      OurCharts& charts = *ours.emplace_back(
+          std::make_unique<OurCharts>(cut.charts, profile.profile, cut.range, cut.mesh.positions.size()));
+      charts.encode();
+      figures.contestants.push_back(charts.sizes(fmt::format("{}, {}", profile.name, faces), cut.info));
+      std::size_t& back = faces_back[turns.size()];
+      turns.push_back({[&charts] { charts.encode(); }, [&charts, &back] { back = charts.decode(); },
+                       [&charts, cores] { (void)charts.decode(cores); }});
+    }
   }
-  figures.encode = faces / median(encode);
-  figures.decode = faces / median(decode);
-  figures.draco10 = draco10.figures(faces);
-  figures.draco7 = draco7.figures(faces);
+  const chartify::IndexedMesh& mesh = cuts.front()->mesh;
+  for (const int level : {10, 7, 5}) peers.push_back(draco_peer(mesh, level));
+  for (const auto& make : {meshopt_peer, openctm_peer, raw_peer}) peers.push_back(make(mesh));
+  for (std::size_t p = 0; p < peers.size(); ++p) {
+    Buffer& bytes = peer_bytes[p];
+    bytes = peers[p]->encode();
+    figures.contestants.push_back({.name = peers[p]->name(), .bytes = bytes.size()});
+    std::size_t& back = faces_back[turns.size()];
+    turns.push_back({[&peer = *peers[p], &bytes] { bytes = peer.encode(); },
+                     [&peer = *peers[p], &bytes, &back] { back = peer.decode(bytes); },
+                     {}});
+  }
+
+  for (unsigned round = 0; round < options.rounds; ++round)
+    for (Turn& turn : turns) turn.take();
+  figures.mesh = cuts.front()->info.mesh;
+  figures.vertices = mesh.positions.size();
+  figures.faces = mesh.faces.size();
+  const auto faces = static_cast<double>(figures.faces);
+  for (std::size_t t = 0; t < turns.size(); ++t) {
+    Contestant& contestant = figures.contestants[t];
+    contestant.faces = faces_back[t];
+    contestant.encode = faces / median(turns[t].encode_seconds);
+    contestant.decode = faces / median(turns[t].decode_seconds);
+    if (turns[t].decode_all) contestant.decode_all = faces / median(turns[t].decode_all_seconds);
+  }
+  measure_access(scratch / std::to_string(options.chart_faces.front()), figures, options.rounds);
   return figures;
 }
 

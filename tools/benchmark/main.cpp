@@ -1,4 +1,4 @@
-// ramcdb-bench [--bits N] [--rounds N] [--json FILE] [--coder FILE...] [--store FILE...]
+// ramcdb-bench [--bits N] [--rounds N] [--chart-faces N,...] [--json FILE] [--coder FILE...] [--store FILE...]
 //
 // Measures the coder against Draco, and the repository's costs, on mesh files. Tables as Markdown on standard output,
 // everything as JSON in a file. tools/bench builds it and chooses meshes.
@@ -7,6 +7,8 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -17,6 +19,7 @@
 
 #include "tools/benchmark/coder_bench.h"
 #include "tools/benchmark/store_bench.h"
+#include "tools/benchmark/timing.h"
 
 namespace {
 
@@ -42,9 +45,15 @@ class Scratch {
   fs::path folder_;
 };
 
-double bits_per_vertex(std::uint64_t bytes, const ramcdb::MeshInfo& info) {
-  return 8 * static_cast<double>(bytes) / static_cast<double>(info.vertices);
-}
+constexpr const char* kCoderHead =
+    "| coder | bits/vertex | to cl10 | connectivity | geometry | wires | index | encode | decode | all cores |\n"
+    "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
+constexpr const char* kSummaryHead =
+    "| ours, faces/chart | against | size, mean | worst | encode speed | decode speed "
+    "|\n|---|---|---:|---:|---:|---:|\n";
+constexpr const char* kStoreHead =
+    "| mesh | faces | charts | import Mfaces/s | store / payload | checkout ms | KiB | blobs | commit ms | KiB | plain "
+    "LMDB ms |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
 
 json mesh_json(const ramcdb::MeshInfo& info) {
   const auto& b = info.bytes;
@@ -62,25 +71,66 @@ json mesh_json(const ramcdb::MeshInfo& info) {
           {"store", b.store}};
 }
 
-json peer_json(const CoderFigures::Peer& peer) {
-  return {{"bytes", peer.bytes}, {"faces", peer.faces}, {"encode", peer.encode}, {"decode", peer.decode}};
+json contestant_json(const Contestant& c) {
+  return {{"name", c.name},
+          {"bytes", c.bytes},
+          {"connectivity", c.connectivity},
+          {"geometry", c.geometry},
+          {"wires", c.wires},
+          {"index", c.index},
+          {"faces", c.faces},
+          {"encode", c.encode},
+          {"decode", c.decode},
+          {"decode_all", c.decode_all}};
 }
 
-json coder_row(const CoderFigures& f) {
-  const auto bpv = [&](std::uint64_t bytes) { return bits_per_vertex(bytes, f.info); };
-  const auto& b = f.info.bytes;
+json coder_table(const CoderFigures& f) {
+  const auto bpv = [&](std::uint64_t bytes) {
+    return 8 * static_cast<double>(bytes) / static_cast<double>(f.vertices);
+  };
+  const double cl10 = bpv(f.find("Draco cl10").bytes);
+  fmt::print("\n### {}: {} faces, {} vertices\n\n{}", f.mesh, f.faces, f.vertices, kCoderHead);
+  json rows = json::array();
+  for (const Contestant& c : f.contestants) {
+    const auto part = [&](std::uint64_t bytes) { return c.connectivity ? fmt::format("{:.2f}", bpv(bytes)) : ""; };
+    fmt::print("| {} | {:.2f} | {:.3f} | {} | {} | {} | {} | {:.2f} | {:.2f} | {} |\n", c.name, bpv(c.bytes),
+               bpv(c.bytes) / cl10, part(c.connectivity), part(c.geometry), part(c.wires), part(c.index),
+               c.encode / 1e6, c.decode / 1e6, c.decode_all > 0 ? fmt::format("{:.2f}", c.decode_all / 1e6) : "");
+    rows.push_back(contestant_json(c));
+  }
+  const Contestant& draco = f.find("Draco cl10");
   fmt::print(
-      "| {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:+.1f} % | {:.2f} / {:.2f} | "
-      "{:.2f} / {:.2f} | {:.2f} / {:.2f} | {:.2f} |\n",
-      f.mesh, f.info.faces, bpv(b.payload), bpv(b.connectivity), bpv(b.geometry), bpv(b.wires),
-      bpv(b.wire_net + b.chart_headers + b.tables), bpv(f.draco10.bytes), bpv(f.draco7.bytes),
-      100 * (bpv(b.payload) / bpv(f.draco10.bytes) - 1), f.encode / 1e6, f.decode / 1e6, f.draco10.encode / 1e6,
-      f.draco10.decode / 1e6, f.draco7.encode / 1e6, f.draco7.decode / 1e6, f.cut / 1e6);
-  json row = mesh_json(f.info);
-  row.update({{"encode", f.encode}, {"decode", f.decode}, {"cut", f.cut}});
-  row["draco10"] = peer_json(f.draco10);
-  row["draco7"] = peer_json(f.draco7);
-  return row;
+      "\none chart: {:.1f} KiB in {:.0f} blobs, {:.2f} ms with opening the repository; all of Draco's file: {:.1f} "
+      "KiB, {:.2f} ms\n",
+      f.chart_bytes / 1024, f.chart_blobs, 1e3 * f.chart_seconds, static_cast<double>(draco.bytes) / 1024,
+      1e3 * static_cast<double>(f.faces) / draco.decode);
+  return {{"mesh", f.mesh},
+          {"vertices", f.vertices},
+          {"faces", f.faces},
+          {"contestants", rows},
+          {"chart", {{"bytes", f.chart_bytes}, {"blobs", f.chart_blobs}, {"seconds", f.chart_seconds}}}};
+}
+
+/// Ours against Draco's level that it is measured by, over all meshes: sizes as geometric mean and worst, speeds as
+/// medians of ratios of the same run.
+void print_summary(const std::vector<CoderFigures>& all) {
+  fmt::print("\n## Over {} meshes\n\n{}", all.size(), kSummaryHead);
+  for (const Contestant& ours : all.front().contestants) {
+    if (ours.connectivity == 0) continue;
+    const std::string peer = ours.name.starts_with("fast") ? "Draco cl7" : "Draco cl10";
+    double log_sum = 0, worst = 0;
+    std::vector<double> encode, decode;
+    for (const CoderFigures& f : all) {
+      const Contestant &a = f.find(ours.name), &b = f.find(peer);
+      const double ratio = static_cast<double>(a.bytes) / static_cast<double>(b.bytes);
+      log_sum += std::log(ratio);
+      worst = std::max(worst, ratio);
+      encode.push_back(a.encode / b.encode);
+      decode.push_back(a.decode / b.decode);
+    }
+    fmt::print("| {} | {} | {:.3f} | {:.3f} | {:.2f} | {:.2f} |\n", ours.name, peer,
+               std::exp(log_sum / static_cast<double>(all.size())), worst, median(encode), median(decode));
+  }
 }
 
 json store_row(const StoreFigures& f) {
@@ -101,39 +151,37 @@ json store_row(const StoreFigures& f) {
   return row;
 }
 
-constexpr const char* kCoderHead =
-    "| mesh | faces | **bits/vertex** | connectivity | geometry | wires | index | Draco cl10 | Draco cl7 | to cl10 | "
-    "enc / dec | cl10 enc / dec | cl7 enc / dec | cut |\n"
-    "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
-constexpr const char* kStoreHead =
-    "| mesh | faces | charts | import Mfaces/s | store / payload | checkout ms | KiB | blobs | commit ms | KiB | plain "
-    "LMDB ms |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
-
 }  // namespace
 
 int main(int argc, char** argv) try {
   CLI::App app("Size and speed of the coder against Draco, and what a repository costs");
-  unsigned bits = 12, rounds = 5;
+  CoderOptions options;
   std::string json_file;
   std::vector<std::string> coder, store;
-  app.add_option("--bits", bits, "Lattice bits along the largest extent");
-  app.add_option("--rounds", rounds, "Rounds that medians are taken over")->check(CLI::PositiveNumber);
+  app.add_option("--bits", options.bits, "Lattice bits along the largest extent");
+  app.add_option("--rounds", options.rounds, "Rounds that medians are taken over")->check(CLI::PositiveNumber);
   app.add_option("--json", json_file, "Where all figures go");
+  app.add_option("--chart-faces", options.chart_faces, "Chart sizes to code at")->delimiter(',');
   app.add_option("--coder", coder, "Meshes to code")->check(CLI::ExistingFile);
   app.add_option("--store", store, "Meshes to keep, check out and commit to")->check(CLI::ExistingFile);
   CLI11_PARSE(app, argc, argv);
 
   const Scratch scratch;
-  json all = {{"bits", bits}, {"rounds", rounds}, {"coder", json::array()}, {"store", json::array()}};
-  if (!coder.empty()) {
-    fmt::print("\n## Coder: {} bits, charts of 5,000 faces, speeds in Mtri/s on one thread\n\n{}", bits, kCoderHead);
-    for (const std::string& file : coder)
-      all["coder"].push_back(coder_row(measure_coder(file, scratch.clear(), bits, rounds)));
+  json all = {{"bits", options.bits}, {"rounds", options.rounds}, {"coder", json::array()}, {"store", json::array()}};
+  std::vector<CoderFigures> figures;
+  if (!coder.empty())
+    fmt::print("\n## Coders: {} bits, speeds in Mtri/s on one thread, medians of {} rounds in turns\n", options.bits,
+               options.rounds);
+  for (const std::string& file : coder) {
+    figures.push_back(measure_coder(file, scratch.clear(), options));
+    all["coder"].push_back(coder_table(figures.back()));
+    std::fflush(stdout);
   }
+  if (!figures.empty()) print_summary(figures);
   if (!store.empty()) {
     fmt::print("\n## Repository: one-chart checkout and commit\n\n{}", kStoreHead);
     for (const std::string& file : store)
-      all["store"].push_back(store_row(measure_store(file, scratch.clear(), bits, rounds)));
+      all["store"].push_back(store_row(measure_store(file, scratch.clear(), options.bits, options.rounds)));
   }
   if (!json_file.empty()) std::ofstream(json_file) << all.dump(2) << '\n';
   return 0;
