@@ -59,8 +59,21 @@ class WordHash {
     filled_ += 4;
     if (filled_ == bytes_.size()) pass_on();
   }
-  void add(LatticePoint p) {
-    for (int a = 0; a < 3; ++a) add(static_cast<std::uint32_t>(p[a]));
+  /// Arrays of 32-bit numbers, however they are grouped: all at once where memory holds them as they are hashed.
+  template <class T>
+  void add_all(std::span<const T> items) {
+    static_assert(sizeof(T) % 4 == 0 && std::is_trivially_copyable_v<T>);
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(items.data());
+    if constexpr (std::endian::native == std::endian::little) {
+      pass_on();
+      (void)XXH3_64bits_update(state_.get(), bytes, items.size_bytes());
+    } else {
+      for (std::size_t i = 0; i < items.size_bytes(); i += 4) {
+        std::uint32_t word;
+        std::memcpy(&word, bytes + i, 4);
+        add(word);
+      }
+    }
   }
   [[nodiscard]] std::uint64_t digest() {
     pass_on();
@@ -117,16 +130,19 @@ std::uint32_t chart_check(const ChartHeader& header, const Chart& chart, const L
   WordHash hash;
   for (const std::uint8_t field : fields) hash.add(field);
   hash.add(static_cast<std::uint32_t>(chart.loop_sizes.size()));
-  for (const std::uint32_t size : chart.loop_sizes) hash.add(size);
-  for (const LatticePoint p : chart.positions) hash.add(p);
-  for (const Triangle& face : chart.faces)
-    for (const std::uint32_t v : face) hash.add(v);
-  hash.add(range.lo);
-  hash.add(range.hi);
-  for (const FanWeights& weights : tables.fan)
-    for (const std::int16_t w : weights) hash.add(static_cast<std::uint32_t>(w));
-  for (const PlaneWeights& weights : tables.plane)
-    for (const std::int16_t w : weights) hash.add(static_cast<std::uint32_t>(w));
+  hash.add_all(std::span(chart.loop_sizes));
+  hash.add_all(std::span(chart.positions));
+  hash.add_all(std::span(chart.faces));
+  hash.add_all(std::span(&range.lo, 1));
+  hash.add_all(std::span(&range.hi, 1));
+  if (header.coding == ChartCoding::fast) {
+    for (int shift = 0; shift < 64; shift += 32) hash.add(static_cast<std::uint32_t>(tables.fast.digest() >> shift));
+  } else {
+    for (const FanWeights& weights : tables.fan)
+      for (const std::int16_t w : weights) hash.add(static_cast<std::uint32_t>(w));
+    for (const PlaneWeights& weights : tables.plane)
+      for (const std::int16_t w : weights) hash.add(static_cast<std::uint32_t>(w));
+  }
   return static_cast<std::uint32_t>(hash.digest());
 }
 
