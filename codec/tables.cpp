@@ -3,6 +3,7 @@
 #include <xxhash.h>
 
 #include "codec/built_in_weights.h"
+#include "codec/fast_table_coder.h"
 #include "codec/varint.h"
 
 namespace ramcdb::codec {
@@ -11,12 +12,16 @@ namespace {
 
 /// A table blob:
 ///
-///   table   = format:1 fan_mask:12 plane_mask:2 weights* check:4
+///   table   = format:1 parts:1 [dense] [fast_part] check:4
+///   dense   = fan_mask:12 plane_mask:2 weights*
 ///   weights = 6 (fan) or 3 (plane) signed varints       for each class whose bit is set, ascending
 ///
-/// Bit i of a mask, lowest first, says that class i differs from the built-in table. check: the lower half of XXH3-64
-/// over all bytes before it. Formats that were ever written: 1.
+/// parts: bit 0 says that the dense profile's weights differ from the built-in ones, bit 1 that the fast profile's
+/// tables do (fast_part: codec/fast_table_coder.h); a part that does not differ is left out. Bit i of a mask, lowest
+/// first, says that class i differs from the built-in table. check: the lower half of XXH3-64 over all bytes before it.
+/// Formats that were ever written: 1.
 constexpr std::uint8_t kTableFormat = 1;
+constexpr unsigned kDensePart = 1, kFastPart = 2;
 
 std::uint32_t check_of(Bytes bytes) { return static_cast<std::uint32_t>(XXH3_64bits(bytes.data(), bytes.size())); }
 
@@ -58,11 +63,18 @@ CoderTables::CoderTables() : fan(kBuiltInFanWeights), plane(kBuiltInPlaneWeights
 
 Buffer encode_tables(const CoderTables& tables) {
   const CoderTables built_in;
-  Buffer out{kTableFormat};
-  put_mask(out, tables.fan, built_in.fan);
-  put_mask(out, tables.plane, built_in.plane);
-  put_weights(out, tables.fan, built_in.fan);
-  put_weights(out, tables.plane, built_in.plane);
+  const bool dense = tables.fan != built_in.fan || tables.plane != built_in.plane, fast = tables.fast != built_in.fast;
+  Buffer out{kTableFormat, static_cast<std::uint8_t>((dense ? kDensePart : 0) | (fast ? kFastPart : 0))};
+  if (dense) {
+    put_mask(out, tables.fan, built_in.fan);
+    put_mask(out, tables.plane, built_in.plane);
+    put_weights(out, tables.fan, built_in.fan);
+    put_weights(out, tables.plane, built_in.plane);
+  }
+  if (fast) {
+    const Buffer part = encode_fast_tables(tables.fast);
+    out.insert(out.end(), part.begin(), part.end());
+  }
   put_fixed32(out, check_of(out));
   return out;
 }
@@ -73,14 +85,22 @@ CoderTables decode_tables(Bytes blob) {
     if (format > kTableFormat) throw Error(Errc::unsupported_version, "a table blob of a newer format");
     reader.fail("is of no known format");
   }
+  const unsigned parts = reader.byte();
+  if (parts > (kDensePart | kFastPart)) reader.fail("has parts that are not known");
   CoderTables tables;
-  const Bytes fan_mask = reader.take(kFanClasses / 8);
-  const Bytes plane_mask = reader.take(kPlaneClasses / 8);
-  take_weights(reader, fan_mask, tables.fan);
-  take_weights(reader, plane_mask, tables.plane);
-  const Bytes checked = blob.first(blob.size() - reader.rest().size());
-  if (reader.fixed32() != check_of(checked)) reader.fail("is damaged");
-  reader.expect_end();
+  if (parts & kDensePart) {
+    const Bytes fan_mask = reader.take(kFanClasses / 8);
+    const Bytes plane_mask = reader.take(kPlaneClasses / 8);
+    take_weights(reader, fan_mask, tables.fan);
+    take_weights(reader, plane_mask, tables.plane);
+  }
+  if (reader.rest().size() < 4) reader.fail("ends too early");
+  const Bytes fast = reader.take(reader.rest().size() - 4);
+  if (reader.fixed32() != check_of(blob.first(blob.size() - 4))) reader.fail("is damaged");
+  if (parts & kFastPart)
+    tables.fast = decode_fast_tables(fast);
+  else if (!fast.empty())
+    reader.fail("has bytes behind its end");
   return tables;
 }
 
