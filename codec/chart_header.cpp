@@ -127,10 +127,14 @@ std::uint32_t chart_check(const ChartHeader& header, Bytes payload, const Chart&
   hash.add_all(chart.faces);
   hash.add(range.lo);
   hash.add(range.hi);
-  for (const FanWeights& weights : tables.fan)
-    for (const std::int16_t w : weights) hash.add(static_cast<std::uint32_t>(w));
-  for (const PlaneWeights& weights : tables.plane)
-    for (const std::int16_t w : weights) hash.add(static_cast<std::uint32_t>(w));
+  if (header.coding == ChartCoding::fast) {
+    for (int shift = 0; shift < 64; shift += 32) hash.add(static_cast<std::uint32_t>(tables.fast.digest() >> shift));
+  } else {
+    for (const FanWeights& weights : tables.fan)
+      for (const std::int16_t w : weights) hash.add(static_cast<std::uint32_t>(w));
+    for (const PlaneWeights& weights : tables.plane)
+      for (const std::int16_t w : weights) hash.add(static_cast<std::uint32_t>(w));
+  }
   return static_cast<std::uint32_t>(hash.digest());
 }
 

@@ -7,14 +7,6 @@
 
 namespace ramcdb::codec {
 
-namespace {
-
-FastPosition position_of(LatticePoint p) {
-  return {static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y), static_cast<std::uint32_t>(p.z), 0};
-}
-
-}  // namespace
-
 // ---- encoding ----
 
 std::optional<FastStream> encode_fast(const Chart& chart, const FastContext& context) {
@@ -31,7 +23,7 @@ std::optional<FastStream> encode_fast(const Chart& chart, const FastContext& con
   std::vector<FastPosition> positions;
   for (const std::uint32_t v : stream.source_vertex) {
     stream.coded.positions.push_back(chart.positions[v]);
-    positions.push_back(position_of(chart.positions[v]));
+    positions.push_back(fast_position(chart.positions[v]));
   }
   const bool wide = needs_wide_sums(context.box, context.border);
   const auto residuals = misses(plan, border, positions, context.box.lo, context.tables->fast.weights(), wide);
@@ -78,7 +70,7 @@ FastChart decode_fast(Bytes bytes, const FastContext& context) {
   chart.geometry_cost = 2048 * std::uint64_t{reader.rest().size()};
   const auto residuals = decode_residuals(reader.rest(), plan, border);
   std::vector<FastPosition> positions(border + plan.places.size());
-  for (std::uint32_t v = 0; v < border; ++v) positions[v] = position_of(context.border[v]);
+  for (std::uint32_t v = 0; v < border; ++v) positions[v] = fast_position(context.border[v]);
   place_all(plan, border, residuals, context.box.lo, context.tables->fast.weights(),
             needs_wide_sums(context.box, context.border), positions);
   chart.positions.reserve(positions.size());

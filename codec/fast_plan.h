@@ -9,11 +9,11 @@
 
 namespace ramcdb::codec {
 
-/// Around a new vertex, as connectivity knows it: the face (before, pivot, new) and what lies next to it. A vertex that
-/// is missing is named by `pivot` again, so that its way from the pivot is zero.
+/// Around a new vertex, as connectivity knows it: the face (before, pivot, new) and what lies next to it.
 struct FastPlace {
   std::uint32_t pivot = 0;
   /// before, next, behind the edge before-pivot, behind pivot-next, the vertex before `before`, behind that edge.
+  /// Behind an edge of the border there is nothing; the vertex that it starts from stands for that.
   std::array<std::uint32_t, 6> around{};
   std::uint16_t predictor = 0;  ///< class of weights, below kFastPredictors
   std::uint16_t trust = 0;      ///< how many parallelograms there are, 0 to 3; kFastFree: no neighbours at all
@@ -37,9 +37,10 @@ struct FastNode {
   std::uint32_t vertex = 0;
   std::uint32_t prev = 0;
   std::uint32_t next = 0;
-  std::uint32_t behind = kNone;  ///< third vertex of the known face at the edge to next
-  std::uint32_t open = 0;        ///< faces that the corner still takes; 0: the node has left the front
-  std::uint32_t degree = 0;      ///< faces around the vertex; 0: on the border
+  std::uint32_t behind = 0;               ///< third vertex of the known face at the edge to next; without one, `vertex`
+  std::uint32_t has_face = 0;             ///< whether there is one: 0 or 1
+  std::uint32_t open = 0;                 ///< faces that the corner still takes; 0: the node has left the front
+  std::array<std::uint32_t, 2> unused{};  ///< so that nodes lie at multiples of 32 bytes
 };
 
 }  // namespace ramcdb::codec

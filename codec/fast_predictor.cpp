@@ -1,37 +1,47 @@
 #include "codec/fast_predictor.h"
 
+#include <bit>
+
 namespace ramcdb::codec {
 
 namespace {
 
-template <class Sum>
-FastPosition guess(const FastPlace& place, const std::vector<FastPosition>& positions, const FastWeights& weights) {
-  const FastPosition& p = positions[place.pivot];
-  const PlaceWeights& w = weights[place.predictor];
-  std::array<Sum, 4> sum{128, 128, 128, 128};
-  for (std::size_t k = 0; k < 6; ++k) {
-    const FastPosition& q = positions[place.around[k]];
-    for (std::size_t a = 0; a < 4; ++a)
-      sum[a] += static_cast<Sum>(static_cast<std::int32_t>(q[a] - p[a])) * static_cast<Sum>(w[k]);
-  }
-  FastPosition result;
-  for (std::size_t a = 0; a < 4; ++a)
-    result[a] = p[a] + static_cast<std::uint32_t>(static_cast<std::make_signed_t<Sum>>(sum[a]) >> 8);
-  return result;
+/// 32 bits.
+RAMCDB_INLINE Unsigned4 narrow_guess(const FastPlace& place, const FastPosition* positions, const PlaceWeights& w) {
+  const Unsigned4 p = positions[place.pivot];
+  Unsigned4 sum = Unsigned4{} + 128;
+  for (std::size_t k = 0; k < 6; ++k)
+    sum += (positions[place.around[k]] - p) * static_cast<std::uint32_t>(std::int32_t{w[k]});
+  return p + std::bit_cast<Unsigned4>(std::bit_cast<Int4>(sum) >> 8);
 }
 
-FastPosition position_of(LatticePoint p) {
-  return {static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y), static_cast<std::uint32_t>(p.z), 0};
+/// 64 bits: ways are shorter than 2^32, and the weights below 2^11 in all.
+Unsigned4 wide_guess(const FastPlace& place, const FastPosition* positions, const PlaceWeights& w) {
+  const Unsigned4 p = positions[place.pivot];
+  Unsigned4 guess = p;
+  for (int a = 0; a < 3; ++a) {
+    std::int64_t sum = 128;
+    for (std::size_t k = 0; k < 6; ++k)
+      sum += std::int64_t{static_cast<std::int32_t>(positions[place.around[k]][a] - p[a])} * w[k];
+    guess[a] += static_cast<std::uint32_t>(sum >> 8);
+  }
+  return guess;
 }
 
 /// Calls with_guess(i, guess) for all places in order.
-template <class Sum, class WithGuess>
-void for_all(const FastPlan& plan, std::uint32_t border, const std::vector<FastPosition>& positions,
-             LatticePoint origin, const FastWeights& weights, const WithGuess& with_guess) {
+template <class WithGuess>
+RAMCDB_INLINE void for_all(const FastPlan& plan, const FastPosition* positions, std::uint32_t border,
+                           LatticePoint origin, const FastWeights& weights, bool wide, const WithGuess& with_guess) {
   std::size_t first = 0;
-  if (border == 0 && !plan.places.empty()) with_guess(first++, position_of(origin));
-  for (std::size_t i = first; i < plan.places.size(); ++i)
-    with_guess(i, guess<Sum>(plan.places[i], positions, weights));
+  if (border == 0 && !plan.places.empty()) with_guess(first++, fast_position(origin));
+  const std::size_t count = plan.places.size();
+  const FastPlace* places = plan.places.data();
+  if (wide)
+    for (std::size_t i = first; i < count; ++i)
+      with_guess(i, wide_guess(places[i], positions, weights[places[i].predictor]));
+  else
+    for (std::size_t i = first; i < count; ++i)
+      with_guess(i, narrow_guess(places[i], positions, weights[places[i].predictor]));
 }
 
 }  // namespace
@@ -48,27 +58,18 @@ bool needs_wide_sums(const LatticeBox& box, std::span<const LatticePoint> border
 std::vector<FastResidual> misses(const FastPlan& plan, std::uint32_t border, const std::vector<FastPosition>& positions,
                                  LatticePoint origin, const FastWeights& weights, bool wide) {
   std::vector<FastResidual> residuals(plan.places.size());
-  const auto miss = [&](std::size_t i, const FastPosition& guess) {
-    for (std::size_t a = 0; a < 3; ++a)
-      residuals[i][a] = static_cast<std::int32_t>(positions[border + i][a] - guess[a]);
-  };
-  if (wide)
-    for_all<std::uint64_t>(plan, border, positions, origin, weights, miss);
-  else
-    for_all<std::uint32_t>(plan, border, positions, origin, weights, miss);
+  for_all(plan, positions.data(), border, origin, weights, wide, [&](std::size_t i, FastPosition guess) {
+    residuals[i] = std::bit_cast<Int4>(positions[border + i] - guess);
+  });
   return residuals;
 }
 
+RAMCDB_FAST_CLONES
 void place_all(const FastPlan& plan, std::uint32_t border, const std::vector<FastResidual>& residuals,
                LatticePoint origin, const FastWeights& weights, bool wide, std::vector<FastPosition>& positions) {
-  const auto put = [&](std::size_t i, const FastPosition& guess) {
-    for (std::size_t a = 0; a < 3; ++a)
-      positions[border + i][a] = guess[a] + static_cast<std::uint32_t>(residuals[i][a]);
-  };
-  if (wide)
-    for_all<std::uint64_t>(plan, border, positions, origin, weights, put);
-  else
-    for_all<std::uint32_t>(plan, border, positions, origin, weights, put);
+  FastPosition* const all = positions.data();
+  for_all(plan, all, border, origin, weights, wide,
+          [&](std::size_t i, FastPosition guess) { all[border + i] = guess + std::bit_cast<Unsigned4>(residuals[i]); });
 }
 
 }  // namespace ramcdb::codec

@@ -17,8 +17,12 @@
 /// wrap, the sum is made in 64 bits.
 namespace ramcdb::codec {
 
-/// A position with room for vector instructions.
-using FastPosition = std::array<std::uint32_t, 4>;
+/// The fourth number is 0.
+using FastPosition = Unsigned4;
+[[nodiscard]] inline FastPosition fast_position(LatticePoint p) {
+  return FastPosition{static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y), static_cast<std::uint32_t>(p.z),
+                      0};
+}
 
 /// Whether positions within `box` and `border` may be too far apart for sums of 32 bits.
 [[nodiscard]] bool needs_wide_sums(const LatticeBox& box, std::span<const LatticePoint> border);

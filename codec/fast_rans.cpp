@@ -9,9 +9,8 @@ RansTable::RansTable(std::span<const std::uint16_t> frequencies) {
   std::uint32_t start = 0;
   for (std::uint32_t symbol = 0; symbol < frequencies.size(); ++symbol) {
     const std::uint32_t frequency = frequencies[symbol];
-    frequency_[symbol] = static_cast<std::uint16_t>(frequency);
-    start_[symbol] = static_cast<std::uint16_t>(start);
-    for (std::uint32_t i = 0; i < frequency; ++i) slots_[start + i] = i | frequency << kRansBits | symbol << 23;
+    ranges_[symbol] = {static_cast<std::uint16_t>(frequency), static_cast<std::uint16_t>(start)};
+    std::fill_n(symbols_.begin() + start, frequency, static_cast<std::uint8_t>(symbol));
     start += frequency;
   }
 }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -26,15 +28,18 @@ class RansTable {
   /// REQUIRES: `frequencies` add up to kRansTotal.
   explicit RansTable(std::span<const std::uint16_t> frequencies);
 
-  [[nodiscard]] std::uint32_t frequency(std::uint32_t symbol) const { return frequency_[symbol]; }
-  [[nodiscard]] std::uint32_t start(std::uint32_t symbol) const { return start_[symbol]; }
-  /// What a state with these lower bits says: offset in the symbol's range, its frequency, the symbol.
-  [[nodiscard]] std::uint32_t slot(std::uint32_t low_bits) const { return slots_[low_bits]; }
+  [[nodiscard]] std::uint32_t frequency(std::uint32_t symbol) const { return ranges_[symbol].frequency; }
+  [[nodiscard]] std::uint32_t start(std::uint32_t symbol) const { return ranges_[symbol].start; }
+  /// The symbol that a state with these lower bits says.
+  [[nodiscard]] std::uint32_t symbol(std::uint32_t low_bits) const { return symbols_[low_bits]; }
 
  private:
-  std::array<std::uint16_t, kMostSymbols> frequency_{};
-  std::array<std::uint16_t, kMostSymbols> start_{};
-  std::array<std::uint32_t, kRansTotal> slots_{};  ///< offset | frequency << 11 | symbol << 23
+  struct Range {
+    std::uint16_t frequency = 0, start = 0;
+  };
+  // Small, so that the tables in use stay in the nearest cache.
+  std::array<std::uint8_t, kRansTotal> symbols_{};
+  std::array<Range, kMostSymbols> ranges_{};
 };
 
 /// Frequencies that add up to kRansTotal and follow `weights`: at least 1 for each weight that is not zero, at most
@@ -59,17 +64,36 @@ class RansEncoder {
   std::uint32_t state_ = kRansLow;
 };
 
+inline std::uint32_t load_le16(const std::uint8_t* from) {
+  std::uint16_t word;
+  std::memcpy(&word, from, 2);
+  if constexpr (std::endian::native == std::endian::little) return word;
+  return static_cast<std::uint32_t>(from[0]) | static_cast<std::uint32_t>(from[1]) << 8;
+}
+inline std::uint64_t load_le64(const std::uint8_t* from) {
+  std::uint64_t word = 0;
+  if constexpr (std::endian::native == std::endian::little)
+    std::memcpy(&word, from, 8);
+  else
+    for (int i = 8; i-- > 0;) word = word << 8 | from[i];
+  return word;
+}
+
 /// Words of 16 bits, lowest byte first. Past the end come zeros; who reads there is found out by over().
 class WordReader {
  public:
   explicit WordReader(Bytes bytes) : bytes_(bytes) {}
 
   std::uint32_t take() {
-    const std::size_t at = at_;
+    const std::uint32_t word = at_ + 2 <= bytes_.size() ? peek() : 0;
     at_ += 2;
-    if (at_ > bytes_.size()) return 0;
-    return bytes_[at] | std::uint32_t{bytes_[at + 1]} << 8;
+    return word;
   }
+  /// Whether `count` words are there for sure, so that peek() and skip() will do.
+  [[nodiscard]] bool has(std::size_t count) const { return at_ + 2 * count <= bytes_.size(); }
+  [[nodiscard]] std::uint32_t peek() const { return load_le16(bytes_.data() + at_); }
+  void skip(std::size_t count) { at_ += 2 * count; }
+
   [[nodiscard]] bool over() const { return at_ > bytes_.size(); }
   [[nodiscard]] std::size_t position() const { return at_; }
 
@@ -84,14 +108,29 @@ class RansDecoder {
   explicit RansDecoder(std::uint32_t state) : state_(state) {}
 
   std::uint32_t pop(const RansTable& table, WordReader& words) {
-    const std::uint32_t slot = table.slot(state_ & (kRansTotal - 1));
-    state_ = (slot >> kRansBits & 0xfff) * (state_ >> kRansBits) + (slot & (kRansTotal - 1));
+    const std::uint32_t symbol = step(table);
     if (state_ < kRansLow) state_ = state_ << 16 | words.take();
-    return slot >> 23;
+    return symbol;
+  }
+
+  /// The same without a branch: whether a word is needed nobody can guess. REQUIRES: words.has(1).
+  std::uint32_t pop_sure(const RansTable& table, WordReader& words) {
+    const std::uint32_t symbol = step(table);
+    const bool low = state_ < kRansLow;
+    const std::uint32_t refilled = state_ << 16 | words.peek();
+    state_ = low ? refilled : state_;
+    words.skip(low);
+    return symbol;
   }
   [[nodiscard]] bool at_end() const { return state_ == kRansLow; }
 
  private:
+  std::uint32_t step(const RansTable& table) {
+    const std::uint32_t low = state_ & (kRansTotal - 1), symbol = table.symbol(low);
+    state_ = table.frequency(symbol) * (state_ >> kRansBits) + low - table.start(symbol);
+    return symbol;
+  }
+
   std::uint32_t state_ = kRansLow;
 };
 

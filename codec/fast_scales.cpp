@@ -63,7 +63,7 @@ const std::array<RansTable, kScales>& scale_tables() {
     auto all = std::make_unique<std::array<RansTable, kScales>>();
     (*all)[0] = table_of(0.0625);
     for (std::uint32_t s = 1; s < kScales; ++s) {
-      const auto quarters = static_cast<double>(quarters_of(s));
+      const auto quarters = static_cast<double>(quarters_of(s - 1));
       (*all)[s] = table_of(quarters / 32);
     }
     return all;

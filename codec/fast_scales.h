@@ -8,6 +8,7 @@
 
 #include "codec/fast_plan.h"
 #include "codec/fast_rans.h"
+#include "codec/fast_vector.h"
 
 namespace ramcdb::codec {
 
@@ -16,19 +17,18 @@ inline constexpr std::uint32_t kWideToken = 60;
 inline constexpr std::uint32_t kTokens = 61;
 
 /// Distribution number s > 0 is that of numbers with a mean magnitude of 2^((s-1)/2) / 8, about; 0: smaller ones.
-inline constexpr std::uint32_t kScales = 40;
+inline constexpr std::uint32_t kScales = 35;
 [[nodiscard]] const std::array<RansTable, kScales>& scale_tables();
 
-/// 2 log2(x) + 1, rounded down to where x has its second highest bit; 0 for 0.
-[[nodiscard]] inline std::uint32_t half_octave(std::uint32_t x) {
-  const auto top = static_cast<std::uint32_t>(std::bit_width(x | 1)) - 1;
-  return x == 0 ? 0 : 2 * top + 1 + (2 * x >> top & 1);
+/// 2 log2(x), rounded down to where x has its second highest bit, for 0 < x < 2^24: exponent and first fraction bit of
+/// a float, which holds such numbers exactly.
+[[nodiscard]] RAMCDB_INLINE std::int32_t half_octave(std::int32_t x) {
+  const auto number = static_cast<float>(x);
+  return static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(number) >> 22) - 2 * 127;
 }
 
 /// The middle of what half_octave() maps to `number`, in 1/4.
-[[nodiscard]] inline std::uint32_t quarters_of(std::uint32_t number) {
-  return number == 0 ? 0 : (5 + 2 * ((number - 1) % 2)) << (number - 1) / 2;
-}
+[[nodiscard]] inline std::uint32_t quarters_of(std::uint32_t number) { return (5 + 2 * (number % 2)) << number / 2; }
 
 /// Which distribution each number is coded with, for encoder and decoder alike.
 ///
@@ -36,52 +36,52 @@ inline constexpr std::uint32_t kScales = 40;
 /// behind it, together, and how many parallelograms its prediction had. A context keeps a running mean of magnitudes.
 class FastScales {
  public:
-  /// \param typical half-octave of eight times the chart's mean magnitude: what border vertices pass for
+  /// \param typical the distribution of all of the chart's numbers: what border vertices pass for
   FastScales(std::uint32_t border, std::uint32_t inner, std::uint32_t typical) : sizes_(std::size_t{border} + inner) {
-    const std::uint32_t mean = quarters_of(typical) / 32;
-    const auto size = static_cast<std::uint16_t>(std::min(mean, kMostSize));
-    std::fill_n(sizes_.begin(), border, Sizes{size, size, size, 0});
-    for (std::uint32_t trust = 0; trust < kTrusts; ++trust)
-      for (std::uint32_t sum = 0; sum < kSums; ++sum) {
-        const std::uint32_t expected = trust == kFastFree ? kUnit * mean : kUnit / 4 * quarters_of(sum) / 3;
-        means_[trust * kSums + sum] = std::max(expected, kUnit / 16);
+    const std::uint32_t mean = typical == 0 ? 0 : quarters_of(typical - 1) / 32;
+    const std::int32_t size = std::min(static_cast<std::int32_t>(mean), kMostSize);
+    std::fill_n(sizes_.begin(), border, Int4{} + size);
+    for (int trust = 0; trust < kTrusts; ++trust)
+      for (int sum = 0; sum < kSums; ++sum) {
+        const std::uint32_t expected =
+            trust == kFastFree ? 4 * mean : (quarters_of(static_cast<std::uint32_t>(sum)) - 4) / 6;
+        means_[at(trust * kSums + sum)] = std::max(kUnit / 4 * static_cast<std::int32_t>(expected), kUnit / 16);
       }
   }
 
   /// Contexts of the three numbers of a vertex.
-  [[nodiscard]] std::array<std::uint32_t, 3> contexts(const FastPlace& place) const {
-    const Sizes &v = sizes_[place.pivot], &p = sizes_[place.around[0]], &n = sizes_[place.around[1]];
-    std::array<std::uint32_t, 3> numbers{};
-    for (std::size_t a = 0; a < 3; ++a)
-      numbers[a] = place.trust * kSums + half_octave(std::uint32_t{v[a]} + p[a] + n[a]);
-    return numbers;
+  [[nodiscard]] RAMCDB_INLINE Int4 contexts(const FastPlace& place) const {
+    const Int4 sum = sizes_[place.pivot] + sizes_[place.around[0]] + sizes_[place.around[1]];
+    const Int4 half_octaves = std::bit_cast<Int4>(__builtin_convertvector(2 * sum + 1, Float4)) >> 22;
+    return half_octaves + (place.trust * kSums - 2 * 127);
   }
 
-  [[nodiscard]] std::uint32_t scale(std::uint32_t context) const { return half_octave(means_[context] / (kUnit / 8)); }
+  [[nodiscard]] RAMCDB_INLINE std::uint32_t scale(std::int32_t context) const {
+    return static_cast<std::uint32_t>(std::max(0, half_octave(means_[at(context)]) - kLowest));
+  }
 
-  void learn(std::uint32_t vertex, const std::array<std::uint32_t, 3>& contexts,
-             const std::array<std::int32_t, 3>& numbers) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      const auto bits = static_cast<std::uint32_t>(numbers[a]);
-      const std::uint32_t size = std::min(numbers[a] < 0 ? 0 - bits : bits, kMostSize);
-      sizes_[vertex][a] = static_cast<std::uint16_t>(size);
-      std::uint32_t& mean = means_[contexts[a]];
-      mean = static_cast<std::uint32_t>(
-          static_cast<std::int32_t>(mean) +
-          ((static_cast<std::int32_t>(kUnit * size) - static_cast<std::int32_t>(mean)) >> kRate));
+  /// \param zigzag the three numbers with their signs in the lowest bits
+  RAMCDB_INLINE void learn(std::uint32_t vertex, Int4 contexts, Unsigned4 zigzag) {
+    const Int4 halves = std::bit_cast<Int4>((zigzag >> 1) + (zigzag & 1));
+    const Int4 sizes = halves < 0 || halves > kMostSize ? Int4{} + kMostSize : halves;
+    sizes_[vertex] = sizes;
+    for (int a = 0; a < 3; ++a) {
+      std::int32_t& mean = means_[at(contexts[a])];
+      mean += (kUnit * sizes[a] - mean) >> kRate;
     }
   }
 
  private:
-  static constexpr std::uint32_t kMostSize = 0xffff;
-  static constexpr std::uint32_t kTrusts = 5;
-  static constexpr std::uint32_t kSums = 40;  ///< half-octaves of a sum of three sizes
-  static constexpr std::uint32_t kUnit = 1024;
+  static constexpr std::int32_t kMostSize = 0x3fff;
+  static constexpr int kTrusts = 5;
+  static constexpr std::int32_t kSums = 36;  ///< half-octaves of twice a sum of three sizes, plus one
+  static constexpr std::int32_t kUnit = 1024;
+  static constexpr int kLowest = 13;  ///< one less than half_octave(kUnit / 8)
   static constexpr int kRate = 5;
-  using Sizes = std::array<std::uint16_t, 4>;
+  static std::size_t at(std::int32_t context) { return static_cast<std::size_t>(context); }
 
-  std::vector<Sizes> sizes_;  ///< per vertex: magnitudes of its numbers, up to kMostSize
-  std::array<std::uint32_t, kTrusts * kSums> means_{};
+  std::vector<Int4> sizes_;  ///< per vertex: magnitudes of its numbers, up to kMostSize
+  std::array<std::int32_t, kTrusts * kSums> means_{};
 };
 
 }  // namespace ramcdb::codec

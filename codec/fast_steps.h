@@ -137,7 +137,10 @@ class FastStepReader {
   [[nodiscard]] std::size_t finish() const;
 
  private:
-  std::uint32_t pop(std::uint32_t context) { return state_.pop(tables_.table(context), words_); }
+  std::uint32_t pop(std::uint32_t context) {
+    const RansTable& table = tables_.table(context);
+    return words_.has(1) ? state_.pop_sure(table, words_) : state_.pop(table, words_);
+  }
   std::uint32_t degree(std::uint32_t context) {
     const std::uint32_t symbol = pop(context);
     if (symbol > kLargeSymbol) return symbol;

@@ -54,6 +54,8 @@ class FastTables {
   [[nodiscard]] const StepFrequencies& steps() const { return steps_; }
   [[nodiscard]] const FastWeights& weights() const { return weights_; }
   [[nodiscard]] const FastStepTables& step_tables() const { return *ready_; }
+  /// XXH3-64 of all numbers, two bytes each, lowest first: stands for the tables in checks.
+  [[nodiscard]] std::uint64_t digest() const { return digest_; }
 
   friend bool operator==(const FastTables& a, const FastTables& b) {
     return a.steps_ == b.steps_ && a.weights_ == b.weights_;
@@ -63,6 +65,7 @@ class FastTables {
   StepFrequencies steps_;
   FastWeights weights_;
   std::shared_ptr<const FastStepTables> ready_;
+  std::uint64_t digest_ = 0;
 };
 
 }  // namespace ramcdb::codec

@@ -6,6 +6,7 @@
 
 #include "codec/fast_steps.h"
 #include "codec/fast_walk.h"
+#include "codec/range_coder.h"
 
 namespace ramcdb::codec {
 
@@ -18,6 +19,14 @@ constexpr std::uint64_t kEnough = 24;
 constexpr double kPull = 12;
 /// Counts of each symbol that the frequencies at the start are worth, in all.
 constexpr std::uint64_t kSymbolPull = 200;
+
+/// What the tables of a context and of a class take, about, in 1/256 bit.
+constexpr std::int64_t kContextCost = 256 * 90, kClassCost = 256 * 45;
+
+/// Of a symbol with this frequency, but for a constant; in 1/256 bit.
+std::int64_t cost_of(std::uint32_t frequency) {
+  return -static_cast<std::int64_t>(range_coder_detail::log2_256(frequency));
+}
 
 /// The normal equations of one class: matrix, then right side.
 using Equations = std::array<std::array<double, 7>, 6>;
@@ -79,7 +88,11 @@ StepFrequencies FastTrainer::learn_steps() const {
     for (std::size_t s = 0; s < kStepSymbols; ++s)
       weights[s] = symbols_[c][s] * kRansTotal + kSymbolPull * start_.steps()[c][s];
     const auto learnt = rans_frequencies(weights, kMostFrequentStep);
-    std::copy_n(learnt.begin(), kStepSymbols, frequencies[c].begin());
+    std::int64_t saved = 0;
+    for (std::size_t s = 0; s < kStepSymbols; ++s)
+      if (symbols_[c][s] > 0)
+        saved += static_cast<std::int64_t>(symbols_[c][s]) * (cost_of(start_.steps()[c][s]) - cost_of(learnt[s]));
+    if (saved > kContextCost) std::copy_n(learnt.begin(), kStepSymbols, frequencies[c].begin());
   }
   return frequencies;
 }
@@ -123,13 +136,33 @@ FastWeights FastTrainer::learn_weights() const {
     }
   }
 
-  FastWeights rounded{};
+  FastWeights rounded = start_.weights();
   for (std::size_t c = 0; c < kFastPredictors; ++c)
     for (std::size_t k = 0; k < 6; ++k) {
       const double clamped = std::clamp(256 * weights[c][k], -double{kMostPlaceWeight}, double{kMostPlaceWeight});
       rounded[c][k] = static_cast<std::int16_t>(std::floor(clamped + 0.5));
     }
+  keep_what_pays(rounded);
   return rounded;
+}
+
+void FastTrainer::keep_what_pays(FastWeights& weights) const {
+  std::array<std::int64_t, kFastPredictors> saved{};
+  const auto cost = [](const Sample& sample, const PlaceWeights& w) {
+    std::int64_t bits = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      double miss = 256 * static_cast<double>(sample.target[a]);
+      for (std::size_t k = 0; k < 6; ++k) miss -= w[k] * static_cast<double>(sample.around[k][a]);
+      bits += static_cast<std::int64_t>(range_coder_detail::log2_256(256 + static_cast<std::uint64_t>(std::abs(miss))));
+    }
+    return bits;
+  };
+  for (const Sample& sample : samples_) {
+    const std::uint32_t c = sample.predictor;
+    saved[c] += cost(sample, start_.weights()[c]) - cost(sample, weights[c]);
+  }
+  for (std::size_t c = 0; c < kFastPredictors; ++c)
+    if (saved[c] <= kClassCost) weights[c] = start_.weights()[c];
 }
 
 }  // namespace ramcdb::codec

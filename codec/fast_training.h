@@ -20,7 +20,8 @@ class FastTrainer {
   /// Charts that the fast coder does not take teach nothing.
   void add(const Chart& chart);
 
-  /// Weights by robust least squares (far misses count less), frequencies by counting.
+  /// Weights by robust least squares (far misses count less), frequencies by counting; only where it pays to store
+  /// them.
   [[nodiscard]] FastTables learn() const;
 
  private:
@@ -33,6 +34,8 @@ class FastTrainer {
 
   [[nodiscard]] StepFrequencies learn_steps() const;
   [[nodiscard]] FastWeights learn_weights() const;
+  /// Puts classes back to the start whose own weights save less than they take.
+  void keep_what_pays(FastWeights& weights) const;
 
   FastTables start_;
   std::vector<Sample> samples_;

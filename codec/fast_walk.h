@@ -65,7 +65,7 @@ class FastWalk {
   void begin_at_border() {
     std::uint32_t first = 0;
     for (const std::uint32_t size : outline_.loop_sizes) {
-      for (std::uint32_t v = first; v < first + size; ++v) add_node(v, kNone, source_.border_degree(v), 0);
+      for (std::uint32_t v = first; v < first + size; ++v) add_node(v, v, 0, source_.border_degree(v));
       for (std::uint32_t i = 0; i < size; ++i) link(first + i, first + (i + 1) % size);
       first += size;
     }
@@ -82,7 +82,7 @@ class FastWalk {
     // The front runs around the seed the other way: a, c, b.
     for (const std::uint32_t i : {0u, 2u, 1u}) {
       const std::uint32_t degree = source_.seed_degree(first_vertex + i);
-      add_node(first_vertex + i, first_vertex + (i + 1) % 3, degree - 1, degree);
+      add_node(first_vertex + i, first_vertex, 1, degree - 1);
     }
     nodes_[first].behind = first_vertex + 1;
     nodes_[first + 1].behind = first_vertex;
@@ -133,7 +133,7 @@ class FastWalk {
     add_face(before.vertex, at.vertex, next.vertex);
     source_.closed(at.prev);
     at.open = 0;
-    before.behind = at.vertex;
+    set_behind(before, at.vertex);
     const std::uint32_t from = at.prev, to = at.next;
     link(from, to);
     --before.open;
@@ -154,11 +154,11 @@ class FastWalk {
     const std::uint32_t degree = source_.step_degree(nodes_, before, pivot);
     if (degree == 0) return join(before, pivot);
     if (vertices_ == max_vertices_) refuse("has more vertices than it declares");
-    describe_place(before, pivot, degree);
+    describe_place(nodes_[before], nodes_[pivot], nodes_[nodes_[pivot].next], nodes_[nodes_[before].prev], degree);
     const std::uint32_t vertex = vertices_++;
     add_face(nodes_[before].vertex, nodes_[pivot].vertex, vertex);
-    const std::uint32_t node = add_node(vertex, nodes_[before].vertex, degree - 1, degree);
-    nodes_[before].behind = nodes_[pivot].vertex;
+    const std::uint32_t node = add_node(vertex, nodes_[before].vertex, 1, degree - 1);
+    set_behind(nodes_[before], nodes_[pivot].vertex);
     link(before, node);
     link(node, pivot);
     --nodes_[before].open;
@@ -177,9 +177,9 @@ class FastWalk {
     const std::uint32_t vertex = nodes_[there].vertex;
     add_face(nodes_[before].vertex, nodes_[pivot].vertex, vertex);
     const std::uint32_t behind_there = nodes_[there].prev;
-    const std::uint32_t here = add_node(vertex, nodes_[before].vertex, open_here, nodes_[there].degree);
+    const std::uint32_t here = add_node(vertex, nodes_[before].vertex, 1, open_here);
     nodes_[there].open = total - 1 - open_here;
-    nodes_[before].behind = nodes_[pivot].vertex;
+    set_behind(nodes_[before], nodes_[pivot].vertex);
     link(behind_there, here);
     link(here, pivot);
     link(before, there);
@@ -189,24 +189,16 @@ class FastWalk {
     loops_.push_back(there);
   }
 
-  void describe_place(std::uint32_t before, std::uint32_t pivot, std::uint32_t degree) {
-    const FastNode &p = nodes_[before], &v = nodes_[pivot], &n = nodes_[v.next], &pp = nodes_[p.prev];
+  void describe_place(const FastNode& p, const FastNode& v, const FastNode& n, const FastNode& pp,
+                      std::uint32_t degree) {
     FastPlace& place = plan_.places[vertices_ - border_];
-    const auto or_pivot = [&](bool there, std::uint32_t vertex) { return there ? vertex : v.vertex; };
-    const bool behind_p = p.behind != kNone, behind_v = v.open == 2 && v.behind != kNone,
-               behind_pp = p.open == 2 && pp.behind != kNone;
     place.pivot = v.vertex;
-    place.around = {p.vertex,
-                    n.vertex,
-                    or_pivot(behind_p, p.behind),
-                    or_pivot(behind_v, v.behind),
-                    pp.vertex,
-                    or_pivot(behind_pp, pp.behind)};
-    place.trust = static_cast<std::uint16_t>(behind_p + behind_v + behind_pp);
+    place.around = {p.vertex, n.vertex, p.behind, v.behind, pp.vertex, pp.behind};
     const std::uint32_t open_v = std::min(v.open, 4u) - 2, open_p = std::min(p.open, 4u) - 2;
-    const std::uint32_t size = degree <= 4 ? 0 : std::min(degree, 7u) - 4;
-    const std::uint32_t flags = 4u * behind_p + 2u * behind_v + behind_pp;
+    const std::uint32_t size = std::clamp(degree, 4u, 7u) - 4;
+    const std::uint32_t flags = 4 * p.has_face + 2 * v.has_face + pp.has_face;
     place.predictor = static_cast<std::uint16_t>(((open_v * 3 + open_p) * 4 + size) * 8 + flags);
+    place.trust = static_cast<std::uint16_t>(p.has_face + (v.has_face & (v.open == 2)) + (pp.has_face & (p.open == 2)));
   }
 
   /// A vertex without neighbours: of a seed, or isolated.
@@ -225,9 +217,14 @@ class FastWalk {
     plan_.faces[faces_++] = {a, b, c};
   }
 
-  std::uint32_t add_node(std::uint32_t vertex, std::uint32_t behind, std::uint32_t open, std::uint32_t degree) {
-    nodes_[used_] = {vertex, 0, 0, behind, open, degree};
+  std::uint32_t add_node(std::uint32_t vertex, std::uint32_t behind, std::uint32_t has_face, std::uint32_t open) {
+    nodes_[used_] = {vertex, 0, 0, behind, has_face, open};
     return used_++;
+  }
+
+  static void set_behind(FastNode& node, std::uint32_t vertex) {
+    node.behind = vertex;
+    node.has_face = 1;
   }
 
   void link(std::uint32_t from, std::uint32_t to) {

@@ -3,6 +3,7 @@
 #include <xxhash.h>
 
 #include "codec/built_in_weights.h"
+#include "codec/fast_table_coder.h"
 #include "codec/range_coder.h"
 #include "codec/varint.h"
 
@@ -11,9 +12,11 @@ namespace ramcdb::codec {
 namespace {
 
 // table   = format:1 check:fixed32 stream
-// stream  = class*                          fan classes, then plane classes, ascending
+// stream  = class* fast_part                fan classes, then plane classes, ascending; codec/fast_table_coder.h
 // class   = own:bit difference{6 or 3}      differences to the built-in weights, if it has weights of its own
-// check   = the lower half of XXH3-64 over all weights, each fixed32. Formats that were ever written: 1.
+// check   = the lower half of XXH3-64 over all weights and the fast tables' digest, each fixed32. Formats that were
+// ever
+//           written: 1.
 constexpr std::uint8_t kTableFormat = 1;
 
 /// The classes of one kind, for encoder and decoder alike.
@@ -38,6 +41,10 @@ void code_tables(Coder& coder, CoderTables& tables) {
   const CoderTables built_in;
   code_classes(coder, tables.fan, built_in.fan);
   code_classes(coder, tables.plane, built_in.plane);
+  StepFrequencies steps = tables.fast.steps();
+  FastWeights weights = tables.fast.weights();
+  FastTablePart(coder).code(steps, weights);
+  if (!Coder::kEncodes) tables.fast = FastTables(steps, weights);
 }
 
 std::uint32_t check_of(const CoderTables& tables) {
@@ -48,6 +55,8 @@ std::uint32_t check_of(const CoderTables& tables) {
   };
   add(tables.fan);
   add(tables.plane);
+  for (int shift = 0; shift < 64; shift += 32)
+    put_fixed32(bytes, static_cast<std::uint32_t>(tables.fast.digest() >> shift));
   return static_cast<std::uint32_t>(XXH3_64bits(bytes.data(), bytes.size()));
 }
 

@@ -238,6 +238,32 @@ TEST(ChartCodec, GoldenBytes) {
             "010200092005e219ab021de31c497fb0e12ff2035b6fd24b6097e31e2555f373b5");
 }
 
+TEST(ChartCodec, GoldenBytesOfTheFastProfile) {
+  // Bytes of format 1: never to change.
+  EXPECT_EQ(testing::hex(encode(testing::one_triangle(), Profile::fast).blob), "0101000001dcf94a6c000204");
+  const Chart tetrahedron_and_point{
+      {}, {{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {0, 0, 9}, {4, 4, 4}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+  EXPECT_EQ(testing::hex(encode(tetrahedron_and_point, Profile::fast).blob),
+            "0101000504e99ff9fc0000000000120012110809080a0707000204000408000802020602");
+  EXPECT_EQ(testing::hex(encode(testing::cut(testing::terrain(4, 30, 1)), Profile::fast).blob),
+            "0103000920b5cd0019000095415d05292e9fa288ef0c2985a503a8bd04003aea1106a08549b7a12458235afbb61a6e4b50");
+}
+
+TEST(ChartCodec, GoldenSizeAndSumOfManyFastCharts) {
+  std::uint64_t sum = 0;
+  std::size_t bytes = 0;
+  const testing::TestMesh land = testing::terrain(20, 40, 5);
+  for (std::uint32_t seed = 1; seed <= 100; ++seed) {
+    const Chart chart =
+        testing::cut(land, testing::random_region(land, 8 * seed, 1 + static_cast<int>(seed % 5), seed));
+    const EncodedChart encoded = encode(chart, Profile::fast);
+    for (const std::uint8_t b : encoded.blob) sum = sum * 1000003 + b;
+    bytes += encoded.blob.size();
+  }
+  EXPECT_EQ(bytes, 46854u);
+  EXPECT_EQ(sum, 17981552307442648275u);
+}
+
 TEST(ChartCodec, GoldenSizeAndSumOfManyCharts) {
   std::uint64_t sum = 0;
   std::size_t bytes = 0;

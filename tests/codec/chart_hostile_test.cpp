@@ -5,6 +5,7 @@
 #include "codec/chart_codec.h"
 #include "codec/chart_header.h"
 #include "codec/dense_coder.h"
+#include "codec/fast_coder.h"
 #include "tests/codec/chart_cutter.h"
 #include "tests/codec/chart_families.h"
 #include "tests/codec/hostile_bytes.h"
@@ -39,8 +40,8 @@ struct Blob {
   }
 };
 
-Blob blob_of(const Chart& chart, const LatticeBox& range) {
-  return {encode_chart(chart, Profile::dense, kBuiltIn, range), range};
+Blob blob_of(const Chart& chart, const LatticeBox& range, Profile profile = Profile::dense) {
+  return {encode_chart(chart, profile, kBuiltIn, range), range};
 }
 
 std::vector<Chart> small_charts() {
@@ -59,10 +60,12 @@ std::vector<Chart> small_charts() {
 
 std::vector<Blob> small_blobs() {
   std::vector<Blob> blobs;
-  for (const Chart& chart : small_charts()) {
-    blobs.push_back(blob_of(chart, testing::box_of(chart)));
-    if (chart.positions.size() > chart.border_count()) blobs.push_back(blob_of(chart, {{0, 0, 0}, {1, 1, 1}}));
-  }
+  for (const Chart& chart : small_charts())
+    for (const Profile profile : {Profile::dense, Profile::fast}) {
+      blobs.push_back(blob_of(chart, testing::box_of(chart), profile));
+      if (chart.positions.size() > chart.border_count())
+        blobs.push_back(blob_of(chart, {{0, 0, 0}, {1, 1, 1}}, profile));
+    }
   return blobs;
 }
 
@@ -73,7 +76,8 @@ TEST(HostileChart, OtherLengthsAreRefused) {
 
 TEST(HostileChart, DamagedBytesAreRefused) {
   for (const Blob& blob : small_blobs())
-    EXPECT_EQ(testing::count_taken_when_damaged([&](Bytes bytes) { blob.decode(bytes); }, blob.encoded.blob), 0);
+    EXPECT_EQ(testing::count_taken_when_damaged([&](Bytes bytes) { blob.decode(bytes); }, blob.encoded.blob), 0)
+        << testing::hex(blob.encoded.blob);
 }
 
 /// The context that `chart`'s stream is coded with.
@@ -133,7 +137,7 @@ TEST(HostileChart, RandomDenseStreamsWithRandomCountsEnd) {
 
 TEST(HostileChart, DeclaredCountsCostNothingBeforeTheyAreThere) {
   const Chart border = testing::wheel(50, false);
-  for (const ChartCoding coding : {ChartCoding::raw, ChartCoding::dense})
+  for (const ChartCoding coding : {ChartCoding::raw, ChartCoding::dense, ChartCoding::fast})
     for (const int filling : {0, 1, 85, 128, 255})
       for (const std::size_t length : {0, 20, 300, 3000}) {
         ChartHeader header;
@@ -161,6 +165,69 @@ TEST(HostileChart, LongSentencesOfTheSameByteEndInTime) {
   for (const int filling : {0, 255, 1, 170}) {
     const Buffer bytes(100000, static_cast<std::uint8_t>(filling));
     EXPECT_TRUE(refuses([&](Bytes stream) { (void)decode_dense(stream, context); }, bytes)) << filling;
+  }
+}
+
+FastContext fast_context_of(const Chart& chart) {
+  const DenseContext context = context_of(chart);
+  return {context.border, context.loop_sizes, context.counts, context.box, &kBuiltIn};
+}
+
+TEST(HostileChart, FastStreamsOfAnyKindEndInAChartOrAnError) {
+  int taken = 0;
+  for (const Chart& chart : small_charts()) {
+    const FastContext context = fast_context_of(chart);
+    const auto stream = encode_fast(chart, context);
+    if (!stream) continue;
+    const auto decode = [&](Bytes bytes) {
+      const FastChart decoded = decode_fast(bytes, context);
+      expect_valid(decoded.positions, decoded.faces);
+      EXPECT_EQ(decoded.faces.size(), chart.faces.size());
+      EXPECT_EQ(decoded.positions.size(), chart.positions.size());
+    };
+    taken += testing::count_taken_when_damaged(decode, stream->bytes);
+    for (std::size_t n = 0; n < stream->bytes.size(); ++n)
+      EXPECT_TRUE(refuses(decode, Bytes(stream->bytes).first(n)) || chart.faces.empty()) << n;
+  }
+  EXPECT_GT(taken, 0) << "otherwise the test above tried nothing but refusals";
+}
+
+TEST(HostileChart, RandomFastStreamsWithRandomCountsEnd) {
+  std::mt19937 random(12);
+  const Chart chart = testing::cut(testing::terrain(7, 30, 1));
+  const auto good = encode_fast(chart, fast_context_of(chart));
+  ASSERT_TRUE(good);
+  for (int run = 0; run < 6000; ++run) {
+    FastContext context = fast_context_of(chart);
+    context.counts = {static_cast<std::uint32_t>(random() % 2000), static_cast<std::uint32_t>(random() % 4000)};
+    if (run % 3 == 0) context.counts = fast_context_of(chart).counts;
+    context.box = {{-kMaxLatticeCoordinate, -kMaxLatticeCoordinate, -kMaxLatticeCoordinate},
+                   {kMaxLatticeCoordinate, kMaxLatticeCoordinate, kMaxLatticeCoordinate}};
+    Buffer bytes = good->bytes;  // some begin well, so that what lies behind is tried, too
+    const std::size_t kept = random() % 3 == 0 ? random() % bytes.size() : 0;
+    bytes.resize(std::max<std::size_t>(kept, random() % 600));
+    for (std::size_t i = kept; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(random());
+    if (kept == 0 && bytes.size() > 2) {
+      bytes[0] = static_cast<std::uint8_t>(random() % 128);
+      bytes[1] = static_cast<std::uint8_t>(random() % std::min<std::size_t>(bytes.size(), 128));
+    }
+    (void)refuses(
+        [&](Bytes stream) {
+          const FastChart decoded = decode_fast(stream, context);
+          expect_valid(decoded.positions, decoded.faces);
+        },
+        bytes);
+  }
+}
+
+TEST(HostileChart, LongFastSentencesOfTheSameByteEndInTime) {
+  FastContext context;
+  context.counts = {1 << 16, 1 << 17};
+  context.box = {{0, 0, 0}, {kMaxLatticeCoordinate, kMaxLatticeCoordinate, kMaxLatticeCoordinate}};
+  context.tables = &kBuiltIn;
+  for (const int filling : {0, 255, 1, 170, 85}) {
+    const Buffer bytes(100000, static_cast<std::uint8_t>(filling));
+    EXPECT_TRUE(refuses([&](Bytes stream) { (void)decode_fast(stream, context); }, bytes)) << filling;
   }
 }
 
@@ -194,6 +261,23 @@ TEST(HostileChart, AnotherBorderTableOrRangeIsNoticed) {
     }
 }
 
+TEST(HostileChart, OtherFastTablesAreNoticed) {
+  const Chart chart = testing::cut(testing::terrain(7, 30, 1));
+  const LatticeBox range = testing::box_of(chart);
+  const EncodedChart encoded = encode_chart(chart, Profile::fast, kBuiltIn, range);
+  ASSERT_EQ(encoded.coding, ChartCoding::fast);
+  CoderTables other;
+  FastWeights weights = other.fast.weights();
+  weights[287][5] = static_cast<std::int16_t>(weights[287][5] + 1);
+  other.fast = FastTables(other.fast.steps(), weights);
+  EXPECT_TRUE(refuses(
+      [&](Bytes bytes) {
+        (void)decode_chart(bytes, std::span(chart.positions).first(chart.border_count()), chart.loop_sizes, other,
+                           range);
+      },
+      encoded.blob));
+}
+
 TEST(HostileChart, UnknownFormatsAndCodingsAreRefused) {
   const Blob blob = blob_of(testing::one_triangle(), testing::box_of(testing::one_triangle()));
   const auto code_with = [&](std::size_t at, int value) {
@@ -208,7 +292,7 @@ TEST(HostileChart, UnknownFormatsAndCodingsAreRefused) {
   };
   EXPECT_EQ(code_with(0, 0), Errc::corrupt);
   EXPECT_EQ(code_with(0, 2), Errc::unsupported_version);
-  for (const int coding : {0, 3, 255}) EXPECT_EQ(code_with(1, coding), Errc::corrupt);
+  for (const int coding : {0, 4, 255}) EXPECT_EQ(code_with(1, coding), Errc::corrupt);
   for (const int flags : {2, 128}) EXPECT_EQ(code_with(2, flags), Errc::corrupt);
 }
 

@@ -66,9 +66,9 @@ TEST(FormatExample, InnerPage) {
   EXPECT_EQ(decode_page(encode_page(page)), Page(page));
 }
 
-void expect_example(const Chart& chart, const LatticeBox& range, ChartCoding coding,
-                    const std::vector<Triangle>& faces) {
-  const EncodedChart encoded = encode_chart(chart, Profile::dense, {}, range);
+void expect_example(const Chart& chart, const LatticeBox& range, ChartCoding coding, const std::vector<Triangle>& faces,
+                    Profile profile = Profile::dense) {
+  const EncodedChart encoded = encode_chart(chart, profile, {}, range);
   EXPECT_EQ(encoded.coding, coding);
   EXPECT_TRUE(is_in_the_document(encoded.blob));
   const auto decoded =
@@ -89,6 +89,16 @@ Chart tent() {
 
 TEST(FormatExample, DenseChart) {
   expect_example(tent(), {{0, 0, 0}, {10, 10, 4}}, ChartCoding::dense, {{3, 0, 4}, {4, 0, 1}, {4, 1, 2}, {4, 2, 3}});
+}
+
+TEST(FormatExample, FastChart) {
+  Chart chart{{12}, {}, {}};
+  for (std::int32_t i = 0; i < 12; ++i) chart.positions.push_back({10 * i, i * i, 0});
+  chart.positions.push_back({50, 40, 4});
+  for (std::uint32_t i = 0; i < 12; ++i) chart.faces.push_back({i, (i + 1) % 12, 12});
+  std::vector<Triangle> faces{{11, 0, 12}};
+  for (std::uint32_t i = 0; i < 11; ++i) faces.push_back({12, i, i + 1});
+  expect_example(chart, {{0, 0, 0}, {110, 121, 4}}, ChartCoding::fast, faces, Profile::fast);
 }
 
 TEST(FormatExample, Layer) {

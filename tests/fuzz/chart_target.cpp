@@ -3,19 +3,20 @@
 #include "codec/chart_codec.h"
 #include "codec/chart_header.h"
 #include "codec/dense_coder.h"
+#include "codec/fast_coder.h"
 #include "codec/raw_chart.h"
 #include "tests/codec/chart_cutter.h"
 #include "tests/fuzz/coder_input.h"
 
 /// A chart that is decoded is one, and comes back from its own blob. The check in a blob's header finds nearly all
-/// damage in the end, so that dense and raw streams are tried without it, too.
+/// damage in the end, so that streams of each coder are tried without it, too.
 namespace ramcdb::fuzz {
 namespace {
 
 using codec::ChartCounts;
 
-enum class Way : std::uint8_t { blob, dense, raw };
-constexpr int kWays = 3;
+enum class Way : std::uint8_t { blob, dense, raw, fast };
+constexpr int kWays = 4;
 /// More than any of the charts has, and little enough to try many a second.
 constexpr std::uint32_t kMostInner = 300, kMostFaces = 600;
 
@@ -45,6 +46,10 @@ codec::DenseContext context_of(const Chart& chart, ChartCounts counts, int edge_
   return context;
 }
 
+codec::FastContext fast_context_of(const Chart& chart, ChartCounts counts) {
+  return {border_of(chart), chart.loop_sizes, counts, range_of(chart), &tables()};
+}
+
 ChartCounts counts_of(const Chart& chart) {
   return {static_cast<std::uint32_t>(chart.positions.size()) - chart.border_count(),
           static_cast<std::uint32_t>(chart.faces.size())};
@@ -60,6 +65,10 @@ Chart decode(Way way, CoderInput& input, const Chart& known) {
     auto dense = codec::decode_dense(input.blob(), context_of(known, counts, exponent));
     chart.positions = std::move(dense.positions);
     chart.faces = std::move(dense.faces);
+  } else if (way == Way::fast) {
+    auto fast = codec::decode_fast(input.blob(), fast_context_of(known, counts));
+    chart.positions = std::move(fast.positions);
+    chart.faces = std::move(fast.faces);
   } else {
     codec::ByteReader reader(input.blob(), "raw chart");
     auto raw = codec::decode_raw(reader, border_of(known), counts, range_of(known));
@@ -76,11 +85,13 @@ void check(const Chart& chart, const Chart& known) {
   const auto border = border_of(known);
   require(chart.loop_sizes == known.loop_sizes && std::equal(border.begin(), border.end(), chart.positions.begin()),
           "another border");
-  const auto encoded = codec::encode_chart(chart, codec::Profile::dense, tables(), range_of(known));
-  const auto again = codec::decode_chart(encoded.blob, border, chart.loop_sizes, tables(), range_of(known));
-  require(again.chart == encoded.decoded, "another chart comes back");
-  require(codec::encode_chart(again.chart, codec::Profile::dense, tables(), range_of(known)).blob == encoded.blob,
-          "the same chart gives other bytes");
+  for (const codec::Profile profile : {codec::Profile::dense, codec::Profile::fast}) {
+    const auto encoded = codec::encode_chart(chart, profile, tables(), range_of(known));
+    const auto again = codec::decode_chart(encoded.blob, border, chart.loop_sizes, tables(), range_of(known));
+    require(again.chart == encoded.decoded, "another chart comes back");
+    require(codec::encode_chart(again.chart, profile, tables(), range_of(known)).blob == encoded.blob,
+            "the same chart gives other bytes");
+  }
 }
 
 CoderSeed seed_of(std::size_t number, Way way) {
@@ -106,6 +117,9 @@ std::vector<Seed> seeds() {
                         .word(counts.faces)
                         .byte(static_cast<std::size_t>(exponent))
                         .named(name + "-dense", dense->bytes));
+    if (const auto fast = codec::encode_fast(chart, fast_context_of(chart, counts)))
+      all.push_back(
+          seed_of(number, Way::fast).word(counts.inner_vertices).word(counts.faces).named(name + "-fast", fast->bytes));
     all.push_back(seed_of(number, Way::raw)
                       .word(counts.inner_vertices)
                       .word(counts.faces)
