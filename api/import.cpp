@@ -12,6 +12,7 @@
 #include "api/topology.h"
 #include "api/version_figures.h"
 #include "chartify/chartify.h"
+#include "codec/fast_training.h"
 #include "codec/page_codec.h"
 #include "ramcdb/error.h"
 
@@ -92,6 +93,19 @@ void note_topology(MeshRecord& record, const chartify::IndexedMesh& mesh) {
   record.isolated_vertices = t.isolated_vertices;
 }
 
+/// Tables for the mesh's profile, named by the record when they are not the built-in ones.
+codec::CoderTables choose_tables(const chartify::WireNet& net, MeshRecord& record) {
+  codec::CoderTables tables;
+  if (record.profile != codec::Profile::fast) return tables;
+  codec::FastTrainer trainer(tables.fast);
+  for (const chartify::NetChart& chart : net.charts) trainer.add(chart.chart);
+  tables.fast = trainer.learn();
+  if (tables == codec::CoderTables()) return tables;
+  record.table = record.next_table;
+  record.next_table = TableId(record.next_table.value + 1);
+  return tables;
+}
+
 void note_encoding(MeshRecord& record, const EncodedMesh& encoded) {
   record.charts = encoded.charts.size();
   record.wires = encoded.wires.size();
@@ -120,9 +134,18 @@ void put_layers(db::Writer& writer, MeshId mesh, EncodedMesh& encoded, const Lay
       writer.put({db::Kind::attribute, mesh, c + 1, {}, layer.layer}, std::move(layer.bytes));
 }
 
+/// The coder tables that `record` names.
+void put_tables(db::Writer& writer, MeshId mesh, const codec::CoderTables& tables, MeshRecord& record) {
+  if (!record.table) return;
+  Buffer blob = codec::encode_tables(tables);
+  record.table_version = writer.version();
+  record.table_bytes += blob.size() + kBlobOverhead;
+  writer.put({db::Kind::table, mesh, record.table.value, {}, 0}, std::move(blob));
+}
+
 /// Puts all blobs under the attempt's version and returns where the mesh stands.
-db::MeshRoot put_mesh(db::Writer& writer, const std::string& name, EncodedMesh& encoded, const LayerTable& table,
-                      MeshRecord& record) {
+db::MeshRoot put_mesh(db::Writer& writer, const std::string& name, EncodedMesh& encoded,
+                      const codec::CoderTables& tables, const LayerTable& table, MeshRecord& record) {
   const MeshId mesh = writer.new_mesh_id();
   const VersionId version = writer.version();
   const std::vector<Page> pages = build_pages(encoded, version);
@@ -136,6 +159,7 @@ db::MeshRoot put_mesh(db::Writer& writer, const std::string& name, EncodedMesh& 
     writer.put({db::Kind::chart, mesh, c + 1, {}, 0}, std::move(encoded.charts[c]));
   for (std::uint32_t w = 0; w < encoded.wires.size(); ++w)
     if (!encoded.wires[w].empty()) writer.put({db::Kind::wire, mesh, w + 1, {}, 0}, std::move(encoded.wires[w]));
+  put_tables(writer, mesh, tables, record);
   put_layers(writer, mesh, encoded, table, record);
   writer.put({db::Kind::mesh_record, mesh, 1, {}, 0}, encode_record(record));
   return {mesh, name, PageId(static_cast<std::uint32_t>(pages.size())), version, version};
@@ -148,7 +172,7 @@ db::ChangedCharts all_charts(MeshId mesh, std::uint64_t count) {
 }
 
 void publish(db::Store& store, const std::string& name, const std::filesystem::path& file, const ImportOptions& options,
-             EncodedMesh& encoded, const LayerTable& table, MeshRecord& record) {
+             EncodedMesh& encoded, const codec::CoderTables& tables, const LayerTable& table, MeshRecord& record) {
   const auto writer = store.writer();
   const VersionId tip = writer->tip(options.branch);
   refuse_taken(store, tip, name);
@@ -160,7 +184,7 @@ void publish(db::Store& store, const std::string& name, const std::filesystem::p
   info.message = options.message.empty() ? "import " + file.filename().string() : options.message;
   info.attempt = db::new_attempt_id();
   info.roots = store.roots(tip);
-  info.roots.push_back(put_mesh(*writer, name, encoded, table, record));
+  info.roots.push_back(put_mesh(*writer, name, encoded, tables, table, record));
   info.changed = {all_charts(info.roots.back().mesh, record.charts)};
   VersionFigures figures;
   figures.operation = "import";
@@ -188,6 +212,7 @@ ImportReport import_mesh(db::Store& store, const std::filesystem::path& file, co
   const NumberType type = type_of(data.positions);
   record.lattice = choose_lattice(data.positions, type, options);
   record.target_faces = options.chart_faces;
+  record.profile = options.profile == ChartProfile::fast ? codec::Profile::fast : codec::Profile::dense;
   std::vector<Point> exact;
   if (options.lossless) {
     record.exact = type;
@@ -213,11 +238,12 @@ ImportReport import_mesh(db::Store& store, const std::filesystem::path& file, co
   const chartify::Charts charts = chartify::chartify(canonical.mesh, chartify_options);
   const chartify::WireNet net = chartify::build_wire_net(canonical.mesh, charts);
 
-  EncodedMesh encoded = encode_mesh(canonical.mesh, net, layers, record, codec::CoderTables{}, options.threads,
-                                    stage(options.progress, "encode"));
+  const codec::CoderTables tables = choose_tables(net, record);
+  EncodedMesh encoded =
+      encode_mesh(canonical.mesh, net, layers, record, tables, options.threads, stage(options.progress, "encode"));
   note_encoding(record, encoded);
   stage(options.progress, "store");
-  publish(store, name, file, options, encoded, layers.table(), record);
+  publish(store, name, file, options, encoded, tables, layers.table(), record);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
 }

@@ -30,7 +30,8 @@ struct MeshRecord {
   /// The numbers that a whole mesh is written with again: float64 where that brings back the numbers of its file, and
   /// float32 would not.
   NumberType written_as = NumberType::float32;
-  TableId table;  ///< coder tables of newly coded charts; 0: the built-in ones
+  TableId table;            ///< coder tables of newly coded charts; 0: the built-in ones
+  VersionId table_version;  ///< the version that wrote them
 
   ChartId next_chart{1};
   WireId next_wire{1};

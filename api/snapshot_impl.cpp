@@ -20,12 +20,16 @@ Snapshot::Impl::Impl(std::shared_ptr<db::Store> store, VersionId version, const 
   const Buffer blob = read_record(*store_, root);
   record_bytes_ = blob.size() + detail::kBlobOverhead;
   record_ = detail::decode_record(blob, fmt::format("mesh {}, version {}", root.name, root.record_version.value));
+  if (record_.table)
+    own_tables_ = codec::decode_tables(
+        store_->reader()->get({db::Kind::table, root.mesh, record_.table.value, record_.table_version, 0}));
   if (record_.layers)
     layers_ = detail::decode_layer_table(store_->reader()->get({db::Kind::attribute, root.mesh, 0, record_.layers, 0}),
                                          fmt::format("mesh {}, version {}", root.name, record_.layers.value));
 }
 
 const codec::CoderTables& Snapshot::Impl::tables(TableId table) const {
+  if (table && table == record_.table) return own_tables_;
   if (table)
     throw Error(Errc::unsupported_version, fmt::format("coder table {} is unknown", table.value), root().name,
                 "use a newer ramcdb");

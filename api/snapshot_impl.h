@@ -37,6 +37,7 @@ class Snapshot::Impl {
   detail::LayerTable layers_;
   detail::PageIndex pages_;
   codec::CoderTables built_in_tables_;
+  codec::CoderTables own_tables_;  ///< those of the record, if it names any
 };
 
 }  // namespace ramcdb
