@@ -193,6 +193,7 @@ ImportReport import_mesh(db::Store& store, const std::filesystem::path& file, co
   mesh_file::MeshData data = read_file(file, options, report);
   const NumberType type = type_of(data.positions);
   record.lattice = choose_lattice(data.positions, type, options);
+  record.profile = options.profile == ChartProfile::fast ? codec::Profile::fast : codec::Profile::dense;
   record.target_faces = options.chart_faces;
   std::vector<Point> exact;
   if (options.lossless) {
@@ -219,7 +220,7 @@ ImportReport import_mesh(db::Store& store, const std::filesystem::path& file, co
   const chartify::Charts charts = chartify::chartify(canonical.mesh, chartify_options);
   const chartify::WireNet net = chartify::build_wire_net(canonical.mesh, charts);
 
-  const codec::CoderTables tables = train_tables(net, canonical.mesh.positions.size());
+  const codec::CoderTables tables = train_tables(net, record.profile, canonical.mesh.positions.size());
   if (!(tables == codec::CoderTables{})) record.table = record.next_table;
   EncodedMesh encoded =
       encode_mesh(canonical.mesh, net, layers, record, tables, options.threads, stage(options.progress, "encode"));

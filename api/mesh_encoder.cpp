@@ -6,6 +6,7 @@
 #include "api/page_index.h"
 #include "api/parallel.h"
 #include "codec/dense_training.h"
+#include "codec/fast_training.h"
 #include "codec/wire_codec.h"
 
 namespace ramcdb::detail {
@@ -63,12 +64,17 @@ LeafPage build_leaf(const EncodedMesh& mesh, std::size_t first, std::size_t last
 
 }  // namespace
 
-codec::CoderTables train_tables(const chartify::WireNet& net, std::uint64_t vertices) {
+codec::CoderTables train_tables(const chartify::WireNet& net, codec::Profile profile, std::uint64_t vertices) {
   constexpr std::uint64_t kMostVertices = 100'000;
   std::vector<const Chart*> sample;
   const std::uint64_t every = vertices / kMostVertices + 1;
   for (std::size_t c = 0; c < net.charts.size(); c += every) sample.push_back(&net.charts[c].chart);
-  return codec::train_dense(sample, vertices);
+  if (profile == codec::Profile::dense) return codec::train_dense(sample, vertices);
+  codec::CoderTables tables;
+  codec::FastTrainer trainer(tables.fast);
+  for (const Chart* chart : sample) trainer.add(*chart);
+  tables.fast = trainer.learn();
+  return tables;
 }
 
 EncodedMesh encode_mesh(const chartify::IndexedMesh& mesh, const chartify::WireNet& net, const LayerSource& layers,

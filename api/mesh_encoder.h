@@ -23,8 +23,9 @@ struct EncodedMesh {
   codec::ChartCost cost;
 };
 
-/// Coder tables that suit a new mesh, from a sample of its charts.
-[[nodiscard]] codec::CoderTables train_tables(const chartify::WireNet& net, std::uint64_t vertices);
+/// Coder tables of a profile that suit a new mesh, from a sample of its charts.
+[[nodiscard]] codec::CoderTables train_tables(const chartify::WireNet& net, codec::Profile profile,
+                                              std::uint64_t vertices);
 
 /// Codes every chart with its layers, and every wire. Versions in the entries are left 0: they are known once the
 /// writer is.

@@ -113,7 +113,8 @@ MeshRecord decode_record(Bytes blob, std::string_view where) {
     if (!(record.lattice.step > 0) || !std::isfinite(record.lattice.step)) throw damaged("bad lattice step");
     for (int a = 0; a < 3; ++a)
       if (!std::isfinite(record.lattice.origin[a])) throw damaged("bad lattice origin");
-    if (j.at("p").get<int>() != static_cast<int>(codec::Profile::dense))
+    record.profile = static_cast<codec::Profile>(j.at("p").get<int>());
+    if (record.profile != codec::Profile::dense && record.profile != codec::Profile::fast)
       throw Error(Errc::unsupported_version, "the mesh uses an unknown profile", where, "use a newer ramcdb");
     if (j.contains("lo")) {
       record.range.lo = point_from(j.at("lo"));

@@ -109,7 +109,7 @@ MeshInfo Snapshot::info() const {
   info.lattice = record.lattice;
   info.lossless = record.exact.has_value();
   info.max_error = info.lossless ? 0 : record.lattice.step / 2;
-  info.profile = "dense";
+  info.profile = record.profile == codec::Profile::fast ? "fast" : "dense";
   info.target_faces = record.target_faces;
   std::tie(info.lo, info.hi) = record.bounds(impl_->pages().box());
   for (const detail::Layer& layer : impl_->layers().layers)

@@ -102,6 +102,7 @@ int run_import(const ImportCommand& command) {
   ImportOptions options = command.options;
   if (!command.lattice_of.empty()) options.lattice = repository.snapshot(command.lattice_of).lattice();
   options.paper_chartify = command.chartify == "paper";
+  options.profile = command.profile == "fast" ? ChartProfile::fast : ChartProfile::dense;
 
   ImportReport report;
   {
@@ -141,9 +142,9 @@ void add_chart_options(CLI::App& verb, ImportCommand& command) {
   verb.add_option("--chartify", command.chartify, "How charts are cut; `paper` is for comparison (default: refined)")
       ->type_name("refined|paper")
       ->check(CLI::Validator(CLI::IsMember({"refined", "paper"})).description(""));
-  verb.add_option("--profile", command.profile, "How charts are coded (default: dense)")
-      ->type_name("dense")
-      ->check(CLI::Validator(CLI::IsMember({"dense"})).description(""));
+  verb.add_option("--profile", command.profile, "How charts are coded, smallest or to be read fast (default: dense)")
+      ->type_name("dense|fast")
+      ->check(CLI::Validator(CLI::IsMember({"dense", "fast"})).description(""));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "codec/fast_steps.h"
 #include "codec/fast_walk.h"
+#include "codec/least_squares.h"
 #include "codec/range_coder.h"
 
 namespace ramcdb::codec {
@@ -28,28 +29,10 @@ std::int64_t cost_of(std::uint32_t frequency) {
   return -static_cast<std::int64_t>(range_coder_detail::log2_256(frequency));
 }
 
-/// The normal equations of one class: matrix, then right side.
-using Equations = std::array<std::array<double, 7>, 6>;
-
-/// Gaussian elimination with the largest pivot; the matrix is positive definite.
-std::array<double, 6> solve(Equations e) {
-  for (std::size_t column = 0; column < 6; ++column) {
-    std::size_t best = column;
-    for (std::size_t row = column + 1; row < 6; ++row)
-      if (std::abs(e[row][column]) > std::abs(e[best][column])) best = row;
-    std::swap(e[column], e[best]);
-    for (std::size_t row = column + 1; row < 6; ++row) {
-      const double factor = e[row][column] / e[column][column];
-      for (std::size_t k = column; k < 7; ++k) e[row][k] -= factor * e[column][k];
-    }
-  }
-  std::array<double, 6> x{};
-  for (std::size_t row = 6; row-- > 0;) {
-    double sum = e[row][6];
-    for (std::size_t k = row + 1; k < 6; ++k) sum -= e[row][k] * x[k];
-    x[row] = sum / e[row][row];
-  }
-  return x;
+std::array<double, 6> unscaled(const PlaceWeights& weights) {
+  std::array<double, 6> out;
+  for (std::size_t k = 0; k < 6; ++k) out[k] = weights[k] / 256.0;
+  return out;
 }
 
 }  // namespace
@@ -100,40 +83,28 @@ StepFrequencies FastTrainer::learn_steps() const {
 FastWeights FastTrainer::learn_weights() const {
   std::array<std::array<double, 6>, kFastPredictors> weights{};
   std::array<std::uint64_t, kFastPredictors> count{};
-  for (std::size_t c = 0; c < kFastPredictors; ++c)
-    for (std::size_t k = 0; k < 6; ++k) weights[c][k] = start_.weights()[c][k] / 256.0;
+  for (std::size_t c = 0; c < kFastPredictors; ++c) weights[c] = unscaled(start_.weights()[c]);
   for (const Sample& sample : samples_) ++count[sample.predictor];
 
   for (int pass = 0; pass < kPasses; ++pass) {
-    std::vector<Equations> equations(kFastPredictors);
+    std::vector<LeastSquares<6>> problems(kFastPredictors);
     for (const Sample& sample : samples_) {
       const std::array<double, 6>& w = weights[sample.predictor];
+      std::array<std::array<double, 6>, 3> around;
       double missed = 0;
       for (std::size_t a = 0; a < 3; ++a) {
         double miss = sample.target[a];
-        for (std::size_t k = 0; k < 6; ++k) miss -= w[k] * static_cast<double>(sample.around[k][a]);
+        for (std::size_t k = 0; k < 6; ++k) {
+          around[a][k] = sample.around[k][a];
+          miss -= w[k] * around[a][k];
+        }
         missed += miss * miss;
       }
-      const double share = 1 / (missed + 3);
-      Equations& e = equations[sample.predictor];
-      for (std::size_t row = 0; row < 6; ++row)
-        for (std::size_t a = 0; a < 3; ++a) {
-          const double scaled = share * static_cast<double>(sample.around[row][a]);
-          for (std::size_t k = 0; k < 6; ++k) e[row][k] += scaled * static_cast<double>(sample.around[k][a]);
-          e[row][6] += scaled * static_cast<double>(sample.target[a]);
-        }
+      for (std::size_t a = 0; a < 3; ++a) problems[sample.predictor].add(around[a], sample.target[a], 1 / (missed + 3));
     }
-    for (std::size_t c = 0; c < kFastPredictors; ++c) {
-      if (count[c] < kEnough) continue;
-      double trace = 1e-9;
-      for (std::size_t k = 0; k < 6; ++k) trace += equations[c][k][k];
-      const double pull = kPull * trace / (6 * static_cast<double>(count[c]));
-      for (std::size_t k = 0; k < 6; ++k) {
-        equations[c][k][k] += pull;
-        equations[c][k][6] += pull * start_.weights()[c][k] / 256.0;
-      }
-      weights[c] = solve(equations[c]);
-    }
+    for (std::size_t c = 0; c < kFastPredictors; ++c)
+      if (count[c] >= kEnough)
+        weights[c] = problems[c].solve(unscaled(start_.weights()[c]), kPull / static_cast<double>(count[c]));
   }
 
   FastWeights rounded = start_.weights();

@@ -20,6 +20,10 @@ class EditTransaction;
 /// to cancel: the repository stays as it was.
 using Progress = std::function<void(std::string_view stage, double done)>;
 
+/// How the charts of a mesh are coded, those of later commits, too: smallest, or larger by a tenth or two and decoded
+/// several times faster.
+enum class ChartProfile { dense, fast };
+
 struct ImportOptions {
   std::string name;    ///< of the mesh; the file's stem when empty
   unsigned bits = 16;  ///< step = largest extent / (2^bits - 1); 1..30
@@ -37,7 +41,8 @@ struct ImportOptions {
   bool lossless_attributes = false;  ///< keep colours, normals and texture coordinates that are floats bit by bit
   std::uint32_t chart_faces = 5000;
   bool paper_chartify = false;  ///< the paper's own Lloyd, for comparison
-  std::string message;          ///< "import FILE" when empty
+  ChartProfile profile = ChartProfile::dense;
+  std::string message;  ///< "import FILE" when empty
   std::string author;
   std::string branch = "main";
   unsigned threads = 1;  ///< changes the time, never the bytes
