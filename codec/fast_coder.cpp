@@ -64,7 +64,7 @@ std::vector<LatticePoint> checked_positions(const std::vector<FastPosition>& pos
     low = p < low ? p : low;
     high = p > high ? p : high;
   }
-  for (int a = 0; a < 3; ++a)
+  for (int a = 0; a < 3 && points.size() > border; ++a)
     if (low[a] < box.lo[a] || high[a] > box.hi[a])
       throw Error(Errc::corrupt, "a chart's vertex lies outside of the chart's range");
   return points;
