@@ -1,5 +1,7 @@
 #include "codec/fast_coder.h"
 
+#include <bit>
+
 #include "codec/fast_predictor.h"
 #include "codec/fast_steps.h"
 #include "codec/fast_walk.h"
@@ -51,6 +53,23 @@ void check_plausible(const ByteReader& reader, const FastContext& context, std::
   if (context.counts.faces > 2 * (vertices + joins)) reader.fail("declares more faces than it can have");
 }
 
+std::vector<LatticePoint> checked_positions(const std::vector<FastPosition>& positions, std::uint32_t border,
+                                            const LatticeBox& box) {
+  std::vector<LatticePoint> points(positions.size());
+  Int4 low{box.hi.x, box.hi.y, box.hi.z, 0}, high{box.lo.x, box.lo.y, box.lo.z, 0};
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    const Int4 p = std::bit_cast<Int4>(positions[v]);
+    points[v] = {p[0], p[1], p[2]};
+    if (v < border) continue;
+    low = p < low ? p : low;
+    high = p > high ? p : high;
+  }
+  for (int a = 0; a < 3 && points.size() > border; ++a)
+    if (low[a] < box.lo[a] || high[a] > box.hi[a])
+      throw Error(Errc::corrupt, "a chart's vertex lies outside of the chart's range");
+  return points;
+}
+
 }  // namespace
 
 FastChart decode_fast(Bytes bytes, const FastContext& context) {
@@ -73,13 +92,7 @@ FastChart decode_fast(Bytes bytes, const FastContext& context) {
   for (std::uint32_t v = 0; v < border; ++v) positions[v] = fast_position(context.border[v]);
   place_all(plan, border, residuals, context.box.lo, context.tables->fast.weights(),
             needs_wide_sums(context.box, context.border), positions);
-  chart.positions.reserve(positions.size());
-  for (const FastPosition& p : positions)
-    chart.positions.push_back(
-        {static_cast<std::int32_t>(p[0]), static_cast<std::int32_t>(p[1]), static_cast<std::int32_t>(p[2])});
-  for (std::size_t v = border; v < chart.positions.size(); ++v)
-    if (!context.box.contains(chart.positions[v]))
-      throw Error(Errc::corrupt, "a chart's vertex lies outside of the chart's range");
+  chart.positions = checked_positions(positions, border, context.box);
   chart.faces = std::move(plan.faces);
   return chart;
 }

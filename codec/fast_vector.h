@@ -12,8 +12,9 @@ using Float4 = float __attribute__((vector_size(16)));
 
 }  // namespace ramcdb::codec
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define RAMCDB_FAST_CLONES __attribute__((target_clones("avx2", "default")))
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define RAMCDB_FAST_CLONES __attribute__((target_clones("arch=x86-64-v3", "default")))
 #else
 #define RAMCDB_FAST_CLONES
 #endif
