@@ -1,4 +1,5 @@
-// ramcdb-bench [--bits N] [--rounds N] [--chart-faces N,...] [--json FILE] [--coder FILE...] [--store FILE...]
+// ramcdb-bench [--bits N] [--rounds N] [--chart-faces N,...] [--json FILE] [--coder FILE...]
+// [--lossless FILE...] [--store FILE...]
 //
 // Measures the coder against Draco, and the repository's costs, on mesh files. Tables as Markdown on standard output,
 // everything as JSON in a file. tools/bench builds it and chooses meshes.
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "tools/benchmark/coder_bench.h"
+#include "tools/benchmark/lossless_bench.h"
 #include "tools/benchmark/store_bench.h"
 #include "tools/benchmark/timing.h"
 
@@ -48,6 +50,8 @@ class Scratch {
 constexpr const char* kCoderHead =
     "| coder | bits/vertex | to cl10 | connectivity | geometry | wires | index | encode | decode | all cores |\n"
     "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
+constexpr const char* kLosslessHead =
+    "| mesh | coordinates | positions | XOR + zstd | ratio | everything |\n|---|---|---:|---:|---:|---:|\n";
 constexpr const char* kSummaryHead =
     "| ours, faces/chart | against | size, mean | worst | encode speed | decode speed "
     "|\n|---|---|---:|---:|---:|---:|\n";
@@ -133,6 +137,16 @@ void print_summary(const std::vector<CoderFigures>& all) {
   }
 }
 
+json lossless_row(const LosslessFigures& f) {
+  const auto bpv = [&](std::uint64_t bytes) {
+    return 8 * static_cast<double>(bytes) / static_cast<double>(f.vertices);
+  };
+  fmt::print("| {} | {} | {:.1f} | {:.1f} | {:.2f} | {:.1f} |\n", f.mesh, f.doubles ? "float64" : "float32",
+             bpv(f.positions), bpv(f.xor_zstd), bpv(f.positions) / bpv(f.xor_zstd), bpv(f.everything));
+  return {{"mesh", f.mesh},           {"vertices", f.vertices},     {"doubles", f.doubles},
+          {"positions", f.positions}, {"everything", f.everything}, {"xor_zstd", f.xor_zstd}};
+}
+
 json store_row(const StoreFigures& f) {
   const double faces = static_cast<double>(f.info.faces);
   const double ratio = static_cast<double>(f.info.bytes.store) / static_cast<double>(f.info.bytes.payload);
@@ -157,17 +171,22 @@ int main(int argc, char** argv) try {
   CLI::App app("Size and speed of the coder against Draco, and what a repository costs");
   CoderOptions options;
   std::string json_file;
-  std::vector<std::string> coder, store;
+  std::vector<std::string> coder, lossless, store;
   app.add_option("--bits", options.bits, "Lattice bits along the largest extent");
   app.add_option("--rounds", options.rounds, "Rounds that medians are taken over")->check(CLI::PositiveNumber);
   app.add_option("--json", json_file, "Where all figures go");
   app.add_option("--chart-faces", options.chart_faces, "Chart sizes to code at")->delimiter(',');
   app.add_option("--coder", coder, "Meshes to code")->check(CLI::ExistingFile);
+  app.add_option("--lossless", lossless, "Meshes to keep to the last bit")->check(CLI::ExistingFile);
   app.add_option("--store", store, "Meshes to keep, check out and commit to")->check(CLI::ExistingFile);
   CLI11_PARSE(app, argc, argv);
 
   const Scratch scratch;
-  json all = {{"bits", options.bits}, {"rounds", options.rounds}, {"coder", json::array()}, {"store", json::array()}};
+  json all = {{"bits", options.bits},
+              {"rounds", options.rounds},
+              {"coder", json::array()},
+              {"lossless", json::array()},
+              {"store", json::array()}};
   std::vector<CoderFigures> figures;
   if (!coder.empty())
     fmt::print("\n## Coders: {} bits, speeds in Mtri/s on one thread, medians of {} rounds in turns\n", options.bits,
@@ -178,6 +197,11 @@ int main(int argc, char** argv) try {
     std::fflush(stdout);
   }
   if (!figures.empty()) print_summary(figures);
+  if (!lossless.empty()) {
+    fmt::print("\n## Lossless positions, bits/vertex\n\n{}", kLosslessHead);
+    for (const std::string& file : lossless)
+      all["lossless"].push_back(lossless_row(measure_lossless(file, scratch.clear())));
+  }
   if (!store.empty()) {
     fmt::print("\n## Repository: one-chart checkout and commit\n\n{}", kStoreHead);
     for (const std::string& file : store)
