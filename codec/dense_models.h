@@ -112,9 +112,9 @@ struct DenseModels {
   std::array<std::array<std::array<std::array<AdaptiveBit, 4>, 5>, 5>, 3> aligned;
   std::array<MissModel, 3 * kActivities * kEdgeSizes> misses;
 
-  /// Begins with what is built in.
-  DenseModels() {
-    const std::uint16_t* next = kBuiltInPrior.data();
+  /// Begins with what is built in: for fine lattices, whose misses have many bits, and for others.
+  explicit DenseModels(bool is_fine = false) {
+    const std::uint16_t* next = kBuiltInPrior[is_fine].data();
     visit_built_in([&](AdaptiveBit& bit) { bit = built_in_bit(*next++); });
   }
 

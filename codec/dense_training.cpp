@@ -14,8 +14,8 @@ namespace ramcdb::codec {
 
 namespace {
 
-constexpr double kUnit = 128;  ///< of weights
-constexpr int kRounds = 4;     ///< of reweighting
+constexpr double kWeightOne = 128;  ///< of weights
+constexpr int kRounds = 4;          ///< of reweighting
 /// Fewer samples than that determine no six weights.
 constexpr std::size_t kLeastSamples = 32;
 /// About what a class of own weights takes in the table.
@@ -97,7 +97,7 @@ double coding_cost(double error) { return error * error + 0.25; }
 
 Vec fan_guess(const Sample& sample, const FanWeights& weights) {
   Vec guess;
-  for (std::size_t i = 0; i < weights.size(); ++i) guess = guess + sample.fan.vectors[i] * (weights[i] / kUnit);
+  for (std::size_t i = 0; i < weights.size(); ++i) guess = guess + sample.fan.vectors[i] * (weights[i] / kWeightOne);
   return guess;
 }
 
@@ -122,17 +122,17 @@ std::array<double, 3> plane_shifts(const Sample& sample, double from) {
 }
 
 template <std::size_t N>
-std::array<double, N> unscaled(const std::array<std::int16_t, N>& weights) {
+std::array<double, N> from_table(const std::array<std::int16_t, N>& weights) {
   std::array<double, N> out;
-  for (std::size_t i = 0; i < N; ++i) out[i] = weights[i] / kUnit;
+  for (std::size_t i = 0; i < N; ++i) out[i] = weights[i] / kWeightOne;
   return out;
 }
 
 template <std::size_t N>
-std::array<std::int16_t, N> scaled(const std::array<double, N>& weights) {
+std::array<std::int16_t, N> to_table(const std::array<double, N>& weights) {
   std::array<std::int16_t, N> out;
   for (std::size_t i = 0; i < N; ++i)
-    out[i] = static_cast<std::int16_t>(std::floor(std::clamp(weights[i] * kUnit, -1024.0, 1024.0) + 0.5));
+    out[i] = static_cast<std::int16_t>(std::floor(std::clamp(weights[i] * kWeightOne, -1024.0, 1024.0) + 0.5));
   return out;
 }
 
@@ -142,7 +142,7 @@ using Samples = std::span<const Sample* const>;
 double pull_of(std::size_t samples) { return 8.0 / static_cast<double>(samples); }
 
 FanWeights fit_fan(Samples samples, const FanWeights& built_in) {
-  const std::array<double, 6> start = unscaled(built_in);
+  const std::array<double, 6> start = from_table(built_in);
   std::array<double, 6> weights = start;
   for (int round = 0; round <= kRounds; ++round) {
     LeastSquares<6> problem;
@@ -161,11 +161,11 @@ FanWeights fit_fan(Samples samples, const FanWeights& built_in) {
     }
     weights = problem.solve(start, pull_of(samples.size()));
   }
-  return scaled(weights);
+  return to_table(weights);
 }
 
 PlaneWeights fit_planes(Samples samples, const CoderTables& tables, const PlaneWeights& built_in) {
-  const std::array<double, 3> start = unscaled(built_in);
+  const std::array<double, 3> start = from_table(built_in);
   std::array<double, 3> weights = start;
   for (int round = 0; round <= kRounds; ++round) {
     LeastSquares<3> problem;
@@ -178,7 +178,7 @@ PlaneWeights fit_planes(Samples samples, const CoderTables& tables, const PlaneW
     }
     weights = problem.solve(start, pull_of(samples.size()));
   }
-  return scaled(weights);
+  return to_table(weights);
 }
 
 /// Bits that `samples` save with `weights` instead of `built_in`.
@@ -199,8 +199,8 @@ std::int64_t saved_by(Samples samples, const CoderTables& tables, const PlaneWei
     const std::array<double, 3> shifts = plane_shifts(*sample, from);
     double before = sample->target[sample->fan.main_axis] - from, after = before;
     for (std::size_t i = 0; i < 3; ++i) {
-      before -= shifts[i] * (built_in[i] / kUnit);
-      after -= shifts[i] * (weights[i] / kUnit);
+      before -= shifts[i] * (built_in[i] / kWeightOne);
+      after -= shifts[i] * (weights[i] / kWeightOne);
     }
     saved.multiply(coding_cost(before) / coding_cost(after));
   }

@@ -57,6 +57,7 @@ class DenseWalk {
         context_(context),
         surface_(context.border, context.counts, context.expected),
         join_search_(surface_, front_, std::min(context.edge_exponent + 1, 31)),
+        models_(std::make_unique<DenseModels>(is_fine())),
         scale_(1.0 / static_cast<double>(std::uint64_t{1} << std::max(0, context.edge_exponent - kScaledFrom))) {
     front_.reserve(context.border.size() + context.expected.inner_vertices + 16);
   }
@@ -75,6 +76,8 @@ class DenseWalk {
   /// What was coded; may be taken apart after run().
   [[nodiscard]] DenseSurface& surface() { return surface_; }
   [[nodiscard]] DenseModels& models() { return *models_; }
+  /// Whether edges are so long that models for fine lattices are used.
+  [[nodiscard]] bool is_fine() const { return context_.edge_exponent > kScaledFrom; }
   /// How many coordinates missed their prediction, but not the candidates of an aligned chart. Encoders only.
   [[nodiscard]] std::uint64_t aligned_misses() const { return aligned_misses_; }
   /// What positions took, in 1/256 bit; the rest is connectivity.
@@ -362,7 +365,7 @@ class DenseWalk {
   DenseSurface surface_;
   DenseFront front_;
   JoinSearch join_search_;
-  std::unique_ptr<DenseModels> models_ = std::make_unique<DenseModels>();
+  std::unique_ptr<DenseModels> models_;
   double scale_;
   Vec loops_area_;
   std::array<std::size_t, 2> found_before_{};  ///< where the coordinates before of a vertex were found; 4: nowhere

@@ -32,6 +32,8 @@ struct Count {
 };
 /// Per built-in bit its counts, one of each chart that it was decided in.
 using Counts = std::vector<std::vector<Count>>;
+/// Of charts on coarse lattices and on fine ones, which begin otherwise.
+using BothCounts = std::array<Counts, 2>;
 
 class CountingCoder {
  public:
@@ -55,7 +57,7 @@ class CountingCoder {
   std::vector<Count> counts_;
 };
 
-void count_chart(const Chart& chart, const CoderTables& tables, const LatticeBox& range, Counts& counts) {
+void count_chart(const Chart& chart, const CoderTables& tables, const LatticeBox& range, BothCounts& both) {
   const std::optional<HalfEdges> edges = HalfEdges::of(chart);
   if (!edges) return;
   DenseContext context;
@@ -72,6 +74,7 @@ void count_chart(const Chart& chart, const CoderTables& tables, const LatticeBox
   DenseWalk walk(coder, guide, context);
   coder.watch(walk.models());
   walk.run();
+  Counts& counts = both[walk.is_fine()];
   counts.resize(coder.counts().size());
   for (std::size_t i = 0; i < counts.size(); ++i)
     if (coder.counts()[i].zeros + coder.counts()[i].ones > 0) counts[i].push_back(coder.counts()[i]);
@@ -94,7 +97,7 @@ chartify::IndexedMesh on_lattice(const mesh_file::MeshData& data, unsigned bits)
 /// At most so many charts of a mesh, so that large ones do not say it all.
 constexpr std::size_t kMostCharts = 16;
 
-void count_mesh(const mesh_file::MeshData& data, unsigned bits, Counts& counts) {
+void count_mesh(const mesh_file::MeshData& data, unsigned bits, BothCounts& counts) {
   const chartify::IndexedMesh mesh = on_lattice(data, bits);
   const chartify::WireNet net = chartify::build_wire_net(mesh, chartify::chartify(mesh, {}));
   LatticeBox range;
@@ -187,40 +190,50 @@ std::vector<std::uint16_t> fit_all(const Counts& counts) {
 }
 
 void print(const std::vector<std::uint16_t>& prior) {
+  std::string line = "    ";
+  fmt::print("    {{\n");
+  for (const std::uint16_t x : prior) {
+    const std::string next = fmt::format("{},", x);
+    if (line.size() + next.size() > 119) {
+      fmt::print("{}\n", line);
+      line = "    ";
+    }
+    line += next;
+  }
+  fmt::print("{}\n    }},\n", line);
+}
+
+void print(const BothCounts& counts) {
   fmt::print(R"(#pragma once
 
 #include <array>
 #include <cstdint>
 
 /// What the adaptive bits of the dense coder start from, in the order of DenseModels::visit_built_in: probability and
-/// strength, as built_in_bit() reads them. Part of the format, never to change. Written by tools/train-prior, which
-/// says from what and how.
+/// strength, as built_in_bit() reads them; for coarse lattices, then for fine ones. Part of the format, never to change.
+/// Written by tools/train-prior, which says from what and how.
 namespace ramcdb::codec {{
 
 // clang-format off
-inline constexpr std::array<std::uint16_t, {}> kBuiltInPrior{{
+inline constexpr std::array<std::array<std::uint16_t, {}>, 2> kBuiltInPrior{{{{
 )",
-             prior.size());
-  std::string line = "    ";
-  for (const std::uint16_t x : prior) {
-    const std::string next = fmt::format("{},", x);
-    if (line.size() + next.size() > 119) fmt::print("{}\n", line), line = "    ";
-    line += next;
-  }
-  fmt::print("{}\n}};\n// clang-format on\n\n}}  // namespace ramcdb::codec\n", line);
+             counts[0].size());
+  for (const Counts& of_some : counts) print(fit_all(of_some));
+  fmt::print("}}}};\n// clang-format on\n\n}}  // namespace ramcdb::codec\n");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) try {
-  Counts counts;
+  BothCounts counts;
   for (int i = 1; i < argc; ++i) {
     const mesh_file::MeshData data = mesh_file::read_mesh(argv[i]);
-    for (const unsigned bits : {11U, 12U, 14U}) count_mesh(data, bits, counts);
+    for (const unsigned bits : {11U, 12U, 14U, 16U, 19U}) count_mesh(data, bits, counts);
     std::cerr << argv[i] << '\n';
   }
-  if (counts.empty()) throw std::runtime_error("usage: ramcdb-train-prior FILE... >codec/built_in_prior.h");
-  print(fit_all(counts));
+  if (counts[0].empty() || counts[1].empty())
+    throw std::runtime_error("usage: ramcdb-train-prior FILE... >codec/built_in_prior.h");
+  print(counts);
   return 0;
 } catch (const std::exception& error) {
   std::cerr << "ramcdb-train-prior: " << error.what() << '\n';

@@ -13,22 +13,22 @@
 namespace ramcdb::codec {
 namespace {
 
-const CoderTables kTables;
+const CoderTables kPlainTables;
 
-FastContext context_of(const Chart& chart) {
+FastContext context_of_fast_chart(const Chart& chart) {
   FastContext context;
   context.border = std::span(chart.positions).first(chart.border_count());
   context.loop_sizes = chart.loop_sizes;
   context.counts.faces = static_cast<std::uint32_t>(chart.faces.size());
   context.counts.inner_vertices = static_cast<std::uint32_t>(chart.positions.size()) - chart.border_count();
   context.box = testing::box_of(chart);
-  context.tables = &kTables;
+  context.tables = &kPlainTables;
   return context;
 }
 
 /// That the coder itself takes the chart and gives it back; without the raw coding that stands in for it elsewhere.
 void expect_comes_back(const Chart& chart) {
-  const FastContext context = context_of(chart);
+  const FastContext context = context_of_fast_chart(chart);
   const auto stream = encode_fast(chart, context);
   ASSERT_TRUE(stream);
   const FastChart decoded = decode_fast(stream->bytes, context);
