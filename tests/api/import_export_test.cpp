@@ -1,5 +1,6 @@
 #include <cmath>
 #include <fstream>
+#include <optional>
 
 #include "tests/api/blobs_of.h"
 #include "tests/api/numbered_edits.h"
@@ -96,19 +97,53 @@ TEST(Import, DoesNotDependOnOrderOrThreads) {
   EXPECT_EQ(blobs_of(*repository, "mesh"), blobs_of(*repository, "shuffled"));
 }
 
-/// Weights that suit the mesh are one blob; charts that are edited later are coded with them, too.
+Repository& imported(TempFolder& folder, std::optional<Repository>& repository, const TestMesh& mesh,
+                     ChartProfile profile) {
+  Repository::create(folder / "r.ramcdb");
+  repository.emplace(Repository::open(folder / "r.ramcdb"));
+  write_test_mesh(mesh, folder / "input.ply");
+  ImportOptions options;
+  options.name = "mesh";
+  options.bits = 14;
+  options.chart_faces = 500;
+  options.profile = profile;
+  (void)repository->import(folder / "input.ply", options);
+  return *repository;
+}
+
+/// Numbers that suit the mesh are one blob; charts that are edited later are coded with them, too.
 TEST(Import, TrainsACoderTableThatEditsKeepUsing) {
-  TempRepository repository(terrain(80, 70));
-  const std::uint64_t charts = repository->snapshot().info().charts;
-  EXPECT_EQ(count_blobs(*repository, VersionId(1), db::Kind::table, 3), 1U);
-  const NumberedEdits edits(*repository);
-  (void)edits.commit(*repository, 1);
-  EXPECT_EQ(count_blobs(*repository, VersionId(2), db::Kind::table, 3), 0U);
-  EXPECT_GT(count_blobs(*repository, VersionId(2), db::Kind::chart, charts), 0U);
-  EXPECT_TRUE(repository->verify({}).ok());
-  const std::uint64_t before = repository->snapshot({}, "v1").info().bytes.geometry,
-                      after = repository->snapshot().info().bytes.geometry;
-  EXPECT_LT(after, before * 11 / 10) << "as dense as before";
+  const TestMesh mesh = terrain(160, 150);
+  for (const ChartProfile profile : {ChartProfile::dense, ChartProfile::fast}) {
+    TempFolder folder;
+    std::optional<Repository> at;
+    Repository& repository = imported(folder, at, mesh, profile);
+    EXPECT_EQ(repository.snapshot().info().profile, profile == ChartProfile::dense ? "dense" : "fast");
+    const std::uint64_t charts = repository.snapshot().info().charts;
+    EXPECT_EQ(count_blobs(repository, VersionId(1), db::Kind::table, 3), 1U);
+    const NumberedEdits edits(repository);
+    (void)edits.commit(repository, 1);
+    EXPECT_EQ(count_blobs(repository, VersionId(2), db::Kind::table, 3), 0U);
+    EXPECT_GT(count_blobs(repository, VersionId(2), db::Kind::chart, charts), 0U);
+    EXPECT_TRUE(repository.verify({}).ok());
+    const std::uint64_t before = repository.snapshot({}, "v1").info().bytes.geometry,
+                        after = repository.snapshot().info().bytes.geometry;
+    EXPECT_LT(after, before * 11 / 10) << "as dense as before";
+  }
+}
+
+/// Every kind of mesh comes out of both profiles alike.
+TEST(Import, InTheFastProfileGivesTheSameTriangles) {
+  for (const Family& family : families()) {
+    SCOPED_TRACE(family.name);
+    TempFolder folder;
+    std::optional<Repository> at;
+    Repository& repository = imported(folder, at, family.mesh, ChartProfile::fast);
+    const Snapshot snapshot = repository.snapshot();
+    EXPECT_EQ(face_set(whole(snapshot)),
+              face_set(snapped(snapshot.lattice(), family.mesh.positions), family.mesh.faces));
+    EXPECT_TRUE(repository.verify({}).ok());
+  }
 }
 
 TEST(Import, RefusesWhatItCannotTakeWholeAndChangesNothing) {

@@ -1,4 +1,4 @@
-// ramcdb-bench [--bits N] [--rounds N] [--chart-faces N,...] [--json FILE] [--coder FILE...]
+// ramcdb-bench [--bits N] [--rounds N] [--chart-faces N,...] [--json FILE] [--plot FILE] [--coder FILE...]
 // [--lossless FILE...] [--store FILE...]
 //
 // Measures the coder against Draco, and the repository's costs, on mesh files. Tables as Markdown on standard output,
@@ -20,6 +20,7 @@
 
 #include "tools/benchmark/coder_bench.h"
 #include "tools/benchmark/lossless_bench.h"
+#include "tools/benchmark/plot.h"
 #include "tools/benchmark/store_bench.h"
 #include "tools/benchmark/timing.h"
 
@@ -170,12 +171,13 @@ json store_row(const StoreFigures& f) {
 int main(int argc, char** argv) try {
   CLI::App app("Size and speed of the coder against Draco, and what a repository costs");
   CoderOptions options;
-  std::string json_file;
+  std::string json_file, plot;
   std::vector<std::string> coder, lossless, store;
   app.add_option("--bits", options.bits, "Lattice bits along the largest extent");
   app.add_option("--rounds", options.rounds, "Rounds that medians are taken over")->check(CLI::PositiveNumber);
   app.add_option("--json", json_file, "Where all figures go");
   app.add_option("--chart-faces", options.chart_faces, "Chart sizes to code at")->delimiter(',');
+  app.add_option("--plot", plot, "Where a picture of sizes and speeds goes, as SVG");
   app.add_option("--coder", coder, "Meshes to code")->check(CLI::ExistingFile);
   app.add_option("--lossless", lossless, "Meshes to keep to the last bit")->check(CLI::ExistingFile);
   app.add_option("--store", store, "Meshes to keep, check out and commit to")->check(CLI::ExistingFile);
@@ -197,6 +199,7 @@ int main(int argc, char** argv) try {
     std::fflush(stdout);
   }
   if (!figures.empty()) print_summary(figures);
+  if (!figures.empty() && !plot.empty()) write_plot(figures, plot);
   if (!lossless.empty()) {
     fmt::print("\n## Lossless positions, bits/vertex\n\n{}", kLosslessHead);
     for (const std::string& file : lossless)
