@@ -210,8 +210,8 @@ void print(const BothCounts& counts) {
 #include <cstdint>
 
 /// What the adaptive bits of the dense coder start from, in the order of DenseModels::visit_built_in: probability and
-/// strength, as built_in_bit() reads them; for coarse lattices, then for fine ones. Part of the format, never to change.
-/// Written by tools/train-prior, which says from what and how.
+/// strength, as built_in_bit() reads them; for coarse lattices, then for fine ones. Part of the format, never to
+/// change. Written by tools/train-prior, which says from what and how.
 namespace ramcdb::codec {{
 
 // clang-format off

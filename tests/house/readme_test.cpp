@@ -30,7 +30,7 @@ TEST(Readme, LinksLeadToFiles) {
 }
 
 TEST(Readme, ToolsThatItNamesExist) {
-  const auto tools = all_matches(read_project_file("README.md"), R"(\b(tools/[a-z_]+(\.cpp|/[a-z_]+)?))");
+  const auto tools = all_matches(read_project_file("README.md"), R"(\b(tools/[a-z_-]+(\.cpp|/[a-z_]+(\.svg)?)?))");
   EXPECT_THAT(tools, testing::IsSupersetOf({"tools/demo", "tools/test", "tools/setup"}));
   for (const std::string& tool : tools) EXPECT_TRUE(fs::exists(project_root() / tool)) << tool;
 }
