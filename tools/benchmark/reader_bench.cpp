@@ -8,7 +8,6 @@
 
 #include <CLI/CLI.hpp>
 #include <OpenMesh/Core/IO/MeshIO.hh>
-#include <OpenMesh/Core/IO/importer/ImporterT.hh>
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 #include <filesystem>
 #include <iostream>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "api/mesh_file/mesh_file.h"
+#include "tests/support/openmesh_reader.h"
 #include "tools/benchmark/timing.h"
 
 namespace {
@@ -26,54 +26,10 @@ using ramcdb::benchmark::median;
 using ramcdb::benchmark::seconds;
 using PolyMesh = OpenMesh::PolyMesh_ArrayKernelT<>;
 
-/// Takes from OpenMesh's readers what ours give, positions and corners, and builds no half-edges.
-class Collector : public OpenMesh::IO::ImporterT<PolyMesh> {
- public:
-  explicit Collector(PolyMesh& mesh) : ImporterT(mesh) {}
-
-  OpenMesh::VertexHandle add_vertex(const OpenMesh::Vec3f& point) override {
-    points_.push_back(point);
-    return OpenMesh::VertexHandle(static_cast<int>(points_.size()) - 1);
-  }
-  OpenMesh::VertexHandle add_vertex(const OpenMesh::Vec3d& point) override {
-    return add_vertex(OpenMesh::vector_cast<OpenMesh::Vec3f>(point));
-  }
-  OpenMesh::VertexHandle add_vertex() override { return add_vertex(OpenMesh::Vec3f(0, 0, 0)); }
-  void set_point(OpenMesh::VertexHandle v, const OpenMesh::Vec3f& point) override {
-    points_[static_cast<std::size_t>(v.idx())] = point;
-  }
-  OpenMesh::FaceHandle add_face(const VHandles& corners) override {
-    for (const auto v : corners) corners_.push_back(static_cast<std::uint32_t>(v.idx()));
-    return OpenMesh::FaceHandle(static_cast<int>(faces_++));
-  }
-  void reserve(unsigned vertices, unsigned, unsigned faces) override {
-    points_.reserve(vertices);
-    corners_.reserve(3 * std::size_t{faces});
-  }
-  [[nodiscard]] std::size_t n_vertices() const override { return points_.size(); }
-  [[nodiscard]] std::size_t n_faces() const override { return faces_; }
-  void finish() override {}
-  // Called for every face of an OBJ, with or without coordinates.
-  void add_face_texcoords(OpenMesh::FaceHandle, OpenMesh::VertexHandle, const std::vector<OpenMesh::Vec2f>&) override {}
-  void add_face_texcoords(OpenMesh::FaceHandle, OpenMesh::VertexHandle, const std::vector<OpenMesh::Vec3f>&) override {}
-
- private:
-  std::vector<OpenMesh::Vec3f> points_;
-  std::vector<std::uint32_t> corners_;
-  std::size_t faces_ = 0;
-};
-
 /// The number of faces, so that nobody may skip the work.
 std::size_t read_ours(const fs::path& file) { return mesh_file::read_mesh(file).face_count(); }
 
-std::size_t read_openmesh(const fs::path& file) {
-  PolyMesh mesh;
-  Collector collector(mesh);
-  OpenMesh::IO::Options options;
-  if (!OpenMesh::IO::IOManager().read(file.string(), collector, options))
-    throw std::runtime_error("OpenMesh cannot read " + file.string());
-  return collector.n_faces();
-}
+std::size_t read_openmesh(const fs::path& file) { return ramcdb::test::read_with_openmesh(file).face_sizes.size(); }
 
 std::size_t build_openmesh(const fs::path& file) {
   PolyMesh mesh;
