@@ -60,6 +60,16 @@ Border border_of(const std::vector<WireLoop>& loops, const std::function<const L
   return border;
 }
 
+const ChartLoader::Group& ChartLoader::group_of(const PageWire& entry, db::BlobReader& reader) {
+  const std::pair key(entry.group, entry.version);
+  auto found = groups_.find(key);
+  if (found == groups_.end()) {
+    const Buffer blob = reader.get({db::Kind::wire, at_.root().mesh, entry.group.value, entry.version, 0});
+    found = groups_.emplace(key, Group{codec::WireGroup(blob), blob.size() + kBlobOverhead}).first;
+  }
+  return found->second;
+}
+
 void ChartLoader::read_wires(const LeafPage& leaf, const PageChart& chart, db::BlobReader& reader) {
   for (const WireLoop& loop : chart.loops) {
     for (const DirectedWire step : loop) {
@@ -69,9 +79,9 @@ void ChartLoader::read_wires(const LeafPage& leaf, const PageChart& chart, db::B
       const LatticePoint end = find_corner(leaf, entry.end)->position;
       LoadedWire loaded{entry, {{begin, end}}, 0};
       if (entry.inner_points) {
-        const Buffer blob = reader.get({db::Kind::wire, at_.root().mesh, entry.id.value, entry.version, 0});
-        loaded.blob_bytes = blob.size() + kBlobOverhead;
-        loaded.wire = codec::decode_wire(blob, begin, end, entry.inner_points);
+        const Group& group = group_of(entry, reader);
+        loaded.blob_bytes = group.wires.share_of(entry.id, group.bytes);
+        loaded.wire = group.wires.wire(entry.id, begin, end, entry.inner_points);
       }
       wires_.emplace(step.wire, std::move(loaded));
     }

@@ -9,6 +9,7 @@
 #include "codec/chart_codec.h"
 #include "codec/layer_codec.h"
 #include "codec/polygon_codec.h"
+#include "codec/wire_codec.h"
 #include "ramcdb/snapshot.h"
 
 namespace ramcdb::detail {
@@ -29,7 +30,7 @@ struct LoadedChart {
 struct LoadedWire {
   PageWire entry;
   Wire wire;
-  std::uint64_t blob_bytes = 0;  ///< checksum included; 0 without inner points
+  std::uint64_t blob_bytes = 0;  ///< its share of its blob, checksum included; 0 without inner points
 };
 
 /// Reads charts of one snapshot and, once each, the wires they pass.
@@ -46,6 +47,11 @@ class ChartLoader {
 
  private:
   struct Job;
+  struct Group {
+    codec::WireGroup wires;
+    std::uint64_t bytes;
+  };
+  [[nodiscard]] const Group& group_of(const PageWire& entry, db::BlobReader& reader);
   void read_wires(const LeafPage& leaf, const PageChart& chart, db::BlobReader& reader);
   void read_layers(Job& job, db::BlobReader& reader) const;
   [[nodiscard]] LoadedChart decode(const Job& job) const;
@@ -54,6 +60,7 @@ class ChartLoader {
 
   const Snapshot::Impl& at_;
   std::unordered_map<WireId, LoadedWire> wires_;
+  std::map<std::pair<WireId, VersionId>, Group> groups_;
 };
 
 /// The border of a chart from its wires: positions and keys, loop after loop, as Chart and its decoder want them.

@@ -74,8 +74,8 @@ CommitReport report_for(const ChangeReport& change, const EncodedEdit& edit) {
   CommitReport report;
   report.charts_touched = change.charts_touched.size();
   report.values_changed = change.values_changed;
-  report.wires_reencoded = static_cast<std::uint64_t>(
-      std::count_if(edit.wires.begin(), edit.wires.end(), [](const auto& w) { return !w.second.blob.empty(); }));
+  report.wires_reencoded = static_cast<std::uint64_t>(std::count_if(
+      edit.wires.begin(), edit.wires.end(), [](const auto& w) { return w.second.base.inner_points > 0; }));
   for (const auto& [id, chart] : edit.charts) {
     report.charts_reencoded += !chart.blob.empty();
     report.layers_reencoded += chart.layers.size();
@@ -99,10 +99,10 @@ void put_edit(const EncodedEdit& edit, MeshId mesh, db::Writer& writer, MeshReco
     record.chart_cost.connectivity += chart.cost.connectivity - chart.cost_before.connectivity;
     record.chart_cost.geometry += chart.cost.geometry - chart.cost_before.geometry;
   }
-  for (const auto& [id, wire] : edit.wires) {
-    if (wire.blob.empty()) continue;
-    record.wire_bytes += wire.blob.size() + kBlobOverhead - wire.bytes_before;
-    writer.put({db::Kind::wire, mesh, id.value, {}, 0}, wire.blob);
+  for (const auto& [id, wire] : edit.wires) record.wire_bytes -= wire.bytes_before;
+  for (const auto& [first, group] : edit.wire_groups) {
+    record.wire_bytes += group.size() + kBlobOverhead;
+    writer.put({db::Kind::wire, mesh, first.value, {}, 0}, group);
   }
 }
 

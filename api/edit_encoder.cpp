@@ -100,16 +100,26 @@ void move_positions(std::span<Point> positions, std::span<const VertexKey> keys,
 
 /// Empty when all its points stay.
 std::optional<RecodedWire> recode_wire(const LoadedWire& loaded, const MoveTable& moves) {
-  RecodedWire recoded{loaded.entry, {}, loaded.blob_bytes};
-  Wire wire = loaded.wire;
+  RecodedWire recoded{loaded.entry, loaded.entry.id, loaded.wire, loaded.blob_bytes};
   std::vector<VertexKey> keys{{VertexKey::Where::corner, loaded.entry.begin.value, 0}};
   for (std::uint32_t i = 0; i < loaded.entry.inner_points; ++i)
     keys.push_back({VertexKey::Where::wire, loaded.entry.id.value, i});
   keys.push_back({VertexKey::Where::corner, loaded.entry.end.value, 0});
-  move_points(wire.points, keys, moves);
-  if (wire.points == loaded.wire.points) return std::nullopt;
-  if (loaded.entry.inner_points) recoded.blob = codec::encode_wire(wire);
+  move_points(recoded.wire.points, keys, moves);
+  if (recoded.wire.points == loaded.wire.points) return std::nullopt;
   return recoded;
+}
+
+/// Codes the wires of an edit that have inner points, some to a blob.
+void encode_wires(EncodedEdit& edit) {
+  std::vector<codec::WireOfGroup> wires;
+  for (const auto& [id, recoded] : edit.wires)
+    if (recoded.base.inner_points) wires.push_back({id, &recoded.wire});
+  for (codec::CodedWireGroup& group : codec::encode_in_groups(wires)) {
+    const WireId first = wires[group.first].id;
+    for (std::size_t i = 0; i < group.count; ++i) edit.wires.at(wires[group.first + i].id).group = first;
+    edit.wire_groups.emplace(first, std::move(group.blob));
+  }
 }
 
 /// The values of a chart in the numbering of its newly coded self.
@@ -339,6 +349,7 @@ EncodedEdit encode_edit(std::span<const RegionPart> parts, const Edit& edit, uns
       if (moved.wires().contains(id) && !encoded.wires.contains(id))
         if (auto moved_wire = recode_wire(wire, table)) encoded.wires.emplace(id, *std::move(moved_wire));
   }
+  encode_wires(encoded);
   return encoded;
 }
 

@@ -45,14 +45,16 @@ struct RecodedChart {
 
 struct RecodedWire {
   PageWire base;
-  Buffer blob;                     ///< empty without inner points
-  std::uint64_t bytes_before = 0;  ///< checksum included
+  WireId group;  ///< the first wire in the blob with its new points
+  Wire wire;
+  std::uint64_t bytes_before = 0;  ///< its share of the blob that it was in, checksum included
 };
 
 /// An edit, coded and ready to be placed on any version that still holds what it was decided on.
 struct EncodedEdit {
   std::map<ChartId, RecodedChart> charts;
   std::map<WireId, RecodedWire> wires;
+  std::map<WireId, Buffer> wire_groups;  ///< the blobs with their points, by first wire
   std::map<CornerId, LatticePoint> corners;
 };
 

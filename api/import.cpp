@@ -94,14 +94,13 @@ void note_topology(MeshRecord& record, const chartify::IndexedMesh& mesh) {
 
 void note_encoding(MeshRecord& record, const EncodedMesh& encoded) {
   record.charts = encoded.charts.size();
-  record.wires = encoded.wires.size();
+  record.wires = encoded.wire_entries.size();
   record.corners = encoded.corner_entries.size();
   record.chart_cost = encoded.cost;
   record.next_chart = ChartId(static_cast<std::uint32_t>(record.charts + 1));
   record.next_wire = WireId(static_cast<std::uint32_t>(record.wires + 1));
   record.next_corner = CornerId(static_cast<std::uint32_t>(record.corners + 1));
-  for (const Buffer& wire : encoded.wires)
-    if (!wire.empty()) record.wire_bytes += wire.size() + kBlobOverhead;
+  for (const auto& [first, group] : encoded.wires) record.wire_bytes += group.size() + kBlobOverhead;
   for (const auto& chart : encoded.layers)
     for (const LayerSource::Blob& layer : chart)
       record.bytes_of_layer(layer.layer) += layer.bytes.size() + kBlobOverhead;
@@ -134,8 +133,7 @@ db::MeshRoot put_mesh(db::Writer& writer, const std::string& name, EncodedMesh& 
   }
   for (std::uint32_t c = 0; c < encoded.charts.size(); ++c)
     writer.put({db::Kind::chart, mesh, c + 1, {}, 0}, std::move(encoded.charts[c]));
-  for (std::uint32_t w = 0; w < encoded.wires.size(); ++w)
-    if (!encoded.wires[w].empty()) writer.put({db::Kind::wire, mesh, w + 1, {}, 0}, std::move(encoded.wires[w]));
+  for (auto& [first, group] : encoded.wires) writer.put({db::Kind::wire, mesh, first.value, {}, 0}, std::move(group));
   if (record.table) {
     record.table_version = version;
     record.next_table = TableId(record.table.value + 1);

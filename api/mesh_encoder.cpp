@@ -28,7 +28,7 @@ PageChart chart_entry(const chartify::NetChart& chart, std::uint32_t index, Tabl
 
 PageWire wire_entry(const chartify::NetWire& wire, std::uint32_t index) {
   PageWire entry;
-  entry.id = WireId(index + 1);
+  entry.id = entry.group = WireId(index + 1);
   entry.begin = CornerId(wire.begin_corner + 1);
   entry.end = CornerId(wire.end_corner + 1);
   entry.inner_points = static_cast<std::uint32_t>(wire.vertices.size() - 2);
@@ -36,10 +36,23 @@ PageWire wire_entry(const chartify::NetWire& wire, std::uint32_t index) {
   return entry;
 }
 
-Buffer encode_path(const chartify::IndexedMesh& mesh, const std::vector<std::uint32_t>& path) {
-  Wire wire;
-  for (const std::uint32_t v : path) wire.points.push_back(mesh.positions[v]);
-  return path.size() > 2 ? codec::encode_wire(wire) : Buffer{};
+/// Codes the wires that have inner points, and tells their entries where.
+std::map<WireId, Buffer> encode_paths(const chartify::IndexedMesh& mesh, const std::vector<chartify::NetWire>& paths,
+                                      std::vector<PageWire>& entries) {
+  std::vector<Wire> wires(paths.size());
+  std::vector<codec::WireOfGroup> coded;
+  for (std::size_t w = 0; w < paths.size(); ++w) {
+    if (paths[w].vertices.size() <= 2) continue;
+    for (const std::uint32_t v : paths[w].vertices) wires[w].points.push_back(mesh.positions[v]);
+    coded.push_back({entries[w].id, &wires[w]});
+  }
+  std::map<WireId, Buffer> blobs;
+  for (codec::CodedWireGroup& group : codec::encode_in_groups(coded)) {
+    for (std::size_t i = 0; i < group.count; ++i)
+      entries[coded[group.first + i].id.value - 1].group = coded[group.first].id;
+    blobs.emplace(coded[group.first].id, std::move(group.blob));
+  }
+  return blobs;
 }
 
 LeafPage build_leaf(const EncodedMesh& mesh, std::size_t first, std::size_t last, VersionId version) {
@@ -102,10 +115,8 @@ EncodedMesh encode_mesh(const chartify::IndexedMesh& mesh, const chartify::WireN
     out.cost.connectivity += cost.connectivity;
     out.cost.geometry += cost.geometry;
   }
-  for (std::uint32_t w = 0; w < net.wires.size(); ++w) {
-    out.wires.push_back(encode_path(mesh, net.wires[w].vertices));
-    out.wire_entries.push_back(wire_entry(net.wires[w], w));
-  }
+  for (std::uint32_t w = 0; w < net.wires.size(); ++w) out.wire_entries.push_back(wire_entry(net.wires[w], w));
+  out.wires = encode_paths(mesh, net.wires, out.wire_entries);
   for (std::uint32_t k = 0; k < net.corners.size(); ++k)
     out.corner_entries.push_back({CornerId(k + 1), mesh.positions[net.corners[k]]});
   return out;

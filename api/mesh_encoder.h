@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <vector>
 
 #include "api/layer_source.h"
@@ -14,7 +15,7 @@ namespace ramcdb::detail {
 /// All blobs of a new mesh but its pages, with the ids that they get: position in the wire-net + 1.
 struct EncodedMesh {
   std::vector<Buffer> charts;
-  std::vector<Buffer> wires;                           ///< empty for a wire without inner points
+  std::map<WireId, Buffer> wires;                      ///< groups, by their first wire
   std::vector<std::vector<LayerSource::Blob>> layers;  ///< per chart
   std::vector<PageChart> chart_entries;
   std::vector<PageWire> wire_entries;

@@ -50,7 +50,10 @@ class Rewriter {
       chart.box = recoded->second.entry.box;
     }
     for (PageWire& wire : leaf.wires)
-      if (edit_.wires.contains(wire.id)) wire.version = writer_.version();
+      if (const auto recoded = edit_.wires.find(wire.id); recoded != edit_.wires.end()) {
+        wire.version = writer_.version();
+        wire.group = recoded->second.group;
+      }
     for (PageCorner& corner : leaf.corners)
       if (const auto moved = edit_.corners.find(corner.id); moved != edit_.corners.end())
         corner.position = moved->second;

@@ -142,7 +142,7 @@ class Verifier {
         require(at, *reader, {db::Kind::attribute, at.root().mesh, chart.id.value, layer.version, layer.layer});
     }
     for (const PageWire& wire : leaf.wires)
-      if (wire.inner_points) require(at, *reader, {db::Kind::wire, at.root().mesh, wire.id.value, wire.version, 0});
+      if (wire.inner_points) require(at, *reader, {db::Kind::wire, at.root().mesh, wire.group.value, wire.version, 0});
   }
 
   void require(const Snapshot::Impl& at, db::BlobReader& reader, const db::BlobKey& key) {

@@ -14,9 +14,9 @@
 ///
 /// Leaf page: newest version; number of charts; then chart by chart: id, version, table, loops, faces, inner vertices,
 /// box, layers. Loops are walked: every step is a wire of the page that goes on from the corner reached, by its rank
-/// among those (most recently met first), or the next new wire, which brings its id, version, inner points and, unless
-/// the loop closes with it, its end corner. So a corner's id and position stand where it is first met, and the second
-/// chart on a wire mostly costs a fraction of a bit for it. At last, wire by wire, the charts outside the page.
+/// among those (most recently met first), or the next new wire, which brings its id, version, inner points, group and,
+/// unless the loop closes with it, its end corner. So a corner's id and position stand where it is first met, and the
+/// second chart on a wire mostly costs a fraction of a bit for it. At last, wire by wire, the charts outside the page.
 ///
 /// Inner page: newest version; number of entries; entry by entry: id, version, box, faces, runs of charts.
 ///
@@ -188,6 +188,7 @@ class LeafCoder {
     wire.version = f_.version(wire.version);
     step.reversed = coder_.code(new_reversed_, step.reversed);
     wire.inner_points = inner_points_.code(coder_, wire.inner_points);
+    code_group(wire);
     CornerId& near_end = step.reversed ? wire.end : wire.begin;
     CornerId& far_end = step.reversed ? wire.begin : wire.end;
     near_end = first ? code_corner(near_end, CornerId()) : at;
@@ -200,6 +201,17 @@ class LeafCoder {
     wires_at_[wire.begin].push_back(wire.id);
     if (wire.end != wire.begin) wires_at_[wire.end].push_back(wire.id);
     met_.emplace(wire.id, MetWire{std::move(wire), 0, {}});
+  }
+
+  /// Mostly that of the wire before; a new one begins with the wire itself.
+  void code_group(PageWire& wire) {
+    if (!Coder::kEncodes) wire.group = wire.id;
+    if (wire.inner_points == 0) return;
+    if (coder_.code(same_group_, wire.group.value == last_group_))
+      wire.group = WireId(last_group_);
+    else
+      wire.group = WireId(f_.near(group_, wire.group.value, wire.id.value));
+    last_group_ = wire.group.value;
   }
 
   /// One of the wires met before: at the start of a loop any, by how long ago it was first met; later on one that ends
@@ -355,13 +367,14 @@ class LeafCoder {
   std::vector<Candidate> candidates_;
   std::uint32_t clock_ = 0, steps_ = 0;
   LatticePoint last_position_;
-  std::uint32_t last_chart_ = 0, last_wire_ = 0, last_corner_ = 0, last_table_ = 0, last_faces_ = 0;
+  std::uint32_t last_chart_ = 0, last_wire_ = 0, last_corner_ = 0, last_table_ = 0, last_faces_ = 0, last_group_ = 0;
 
   AdaptiveUnsigned counts_, loop_count_, step_count_, rank_, start_position_, crowd_position_, corner_back_,
       inner_points_, beyond_, layer_count_;
   std::array<AdaptiveUnsigned, 3> outside_count_;
-  AdaptiveBit next_chart_, next_wire_, next_corner_, new_wire_, new_reversed_, known_reversed_, new_corner_, empty_box_;
-  AdaptiveSigned chart_jump_, wire_jump_, corner_jump_, table_, faces_, inner_, layer_, outside_;
+  AdaptiveBit next_chart_, next_wire_, next_corner_, new_wire_, new_reversed_, known_reversed_, new_corner_, empty_box_,
+      same_group_;
+  AdaptiveSigned chart_jump_, wire_jump_, group_, corner_jump_, table_, faces_, inner_, layer_, outside_;
   std::array<AdaptiveSigned, 3> corner_, free_lo_, free_hi_;
 };
 

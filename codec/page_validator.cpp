@@ -23,6 +23,7 @@ class Validator {
     for (const PageWire& wire : leaf.wires) {
       require(corners_.contains(wire.begin) && corners_.contains(wire.end),
               "a wire ends in a corner that is not there");
+      require(wire.group && (wire.inner_points || wire.group == wire.id), "a wire belongs to no group");
       require(std::is_sorted(wire.charts.begin(), wire.charts.end()), "the charts of a wire are out of order");
       corner_used_[wire.begin] = corner_used_[wire.end] = true;
       wires_.emplace(wire.id, &wire);

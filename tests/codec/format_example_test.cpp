@@ -45,24 +45,26 @@ TEST(FormatExample, RangeCoder) {
 
 TEST(FormatExample, Wire) {
   const Wire wire{{{0, 0, 0}, {4, 1, 0}, {10, 0, 0}}};
-  EXPECT_TRUE(is_in_the_document(encode_wire(wire)));
-  EXPECT_EQ(decode_wire(encode_wire(wire), {0, 0, 0}, {10, 0, 0}, 1), wire);
+  const WireOfGroup alone{WireId(1), &wire};
+  const Buffer blob = encode_wires(std::span(&alone, 1));
+  EXPECT_TRUE(is_in_the_document(blob)) << testing::hex(blob);
+  EXPECT_EQ(WireGroup(blob).wire(WireId(1), {0, 0, 0}, {10, 0, 0}, 1), wire);
 }
 
 TEST(FormatExample, LeafPage) {
   LeafPage page;
   PageChart chart{ChartId(1), VersionId(1), TableId(), 4, 1, {{0, 0, 0}, {10, 10, 4}}, {{{WireId(1), false}}}, {}};
   page.charts.push_back(chart);
-  page.wires.push_back({WireId(1), VersionId(1), CornerId(1), CornerId(1), 3, {ChartId(1)}});
+  page.wires.push_back({WireId(1), VersionId(1), WireId(1), CornerId(1), CornerId(1), 3, {ChartId(1)}});
   page.corners.push_back({CornerId(1), {0, 0, 0}});
-  EXPECT_TRUE(is_in_the_document(encode_page(page)));
+  EXPECT_TRUE(is_in_the_document(encode_page(page))) << testing::hex(encode_page(page));
   EXPECT_EQ(decode_page(encode_page(page)), Page(page));
 }
 
 TEST(FormatExample, InnerPage) {
   InnerPage page;
   page.pages.push_back({PageId(1), VersionId(2), {{0, 0, 0}, {10, 10, 4}}, 4, {{ChartId(1), 1}}});
-  EXPECT_TRUE(is_in_the_document(encode_page(page)));
+  EXPECT_TRUE(is_in_the_document(encode_page(page))) << testing::hex(encode_page(page));
   EXPECT_EQ(decode_page(encode_page(page)), Page(page));
 }
 

@@ -17,7 +17,8 @@ class PageMaker {
  public:
   void corner(std::uint32_t id, LatticePoint p) { corners_[CornerId(id)] = p; }
   void wire(std::uint32_t id, std::uint32_t begin, std::uint32_t end, std::uint32_t inner, std::uint32_t version = 1) {
-    wires_[WireId(id)] = {WireId(id), VersionId(version), CornerId(begin), CornerId(end), inner, {}};
+    const WireId group(inner ? std::max<std::uint32_t>(1, id - id % 5) : id);
+    wires_[WireId(id)] = {WireId(id), VersionId(version), group, CornerId(begin), CornerId(end), inner, {}};
   }
   /// Loops as wire ids, negative when passed backwards.
   PageChart& chart(std::uint32_t id, const std::vector<std::vector<std::int64_t>>& loops) {

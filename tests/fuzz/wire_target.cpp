@@ -1,7 +1,12 @@
 #include "codec/wire_codec.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
 #include "tests/fuzz/coder_input.h"
 
-/// A wire that is decoded has its points and ends, on the lattice, and comes back from its own blob.
+/// A wire of a decoded group has its points and ends, on the lattice, and comes back from a blob of its own.
 namespace ramcdb::fuzz {
 namespace {
 
@@ -18,12 +23,14 @@ void put(CoderSeed& seed, LatticePoint p) {
   for (int a = 0; a < 3; ++a) seed.word(static_cast<std::uint32_t>(p[a] + kMaxLatticeCoordinate));
 }
 
-Seed seed_of(std::string name, const Wire& wire) {
+Seed seed_of(std::string name, std::span<const Wire> wires) {
   CoderSeed seed;
-  put(seed, wire.points.front());
-  put(seed, wire.points.back());
-  seed.word(static_cast<std::uint32_t>(wire.points.size()) - 2);
-  return seed.named(std::move(name), codec::encode_wire(wire));
+  put(seed, wires.front().points.front());
+  put(seed, wires.front().points.back());
+  seed.word(static_cast<std::uint32_t>(wires.front().points.size()) - 2);
+  std::vector<codec::WireOfGroup> group;
+  for (const Wire& wire : wires) group.push_back({WireId(static_cast<std::uint32_t>(2 * group.size() + 1)), &wire});
+  return seed.named(std::move(name), codec::encode_wires(group));
 }
 
 }  // namespace
@@ -38,7 +45,8 @@ std::vector<Seed> seeds() {
   }
   Wire closed = bend;
   closed.points.push_back(closed.points.front());
-  return {seed_of("line", line), seed_of("bend", bend), seed_of("wild", wild), seed_of("closed", closed)};
+  const std::vector<Wire> all{line, bend, wild, closed};
+  return {seed_of("line", {&line, 1}), seed_of("bend", {&bend, 1}), seed_of("wild", {&wild, 1}), seed_of("all", all)};
 }
 
 }  // namespace ramcdb::fuzz
@@ -48,11 +56,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::CoderInput input(data, size);
   const LatticePoint begin = fuzz::point(input), end = fuzz::point(input);
   const std::uint32_t inner = input.word() % fuzz::kMostPoints;
-  Wire wire;
-  if (fuzz::refuses([&] { wire = codec::decode_wire(input.blob(), begin, end, inner); })) return 0;
-  fuzz::require(wire.points.size() == inner + 2, "another number of points");
-  fuzz::require(wire.points.front() == begin && wire.points.back() == end, "other ends");
-  fuzz::require_valid(wire.points, {});
-  fuzz::require(codec::decode_wire(codec::encode_wire(wire), begin, end, inner) == wire, "another wire comes back");
+  std::optional<codec::WireGroup> group;
+  if (fuzz::refuses([&] { group.emplace(input.blob()); })) return 0;
+  for (const WireId id : group->ids()) {
+    Wire wire;
+    if (fuzz::refuses([&] { wire = group->wire(id, begin, end, inner); })) continue;
+    fuzz::require(wire.points.size() == inner + 2, "another number of points");
+    fuzz::require(wire.points.front() == begin && wire.points.back() == end, "other ends");
+    fuzz::require_valid(wire.points, {});
+    const codec::WireOfGroup alone{id, &wire};
+    const codec::WireGroup again(codec::encode_wires(std::span(&alone, 1)));
+    fuzz::require(again.wire(id, begin, end, inner) == wire, "another wire comes back");
+  }
   return 0;
 }

@@ -38,7 +38,8 @@ struct PageChart {
 
 struct PageWire {
   WireId id;
-  VersionId version;  ///< the version that wrote the wire's blob; a wire without inner points has no blob
+  VersionId version;  ///< the version that wrote the blob with its points; a wire without inner points has none
+  WireId group;       ///< whose id that blob's key has: the first wire in it; its own without inner points
   CornerId begin, end;
   std::uint32_t inner_points = 0;
   /// The charts that pass it, ascending, a chart once per pass: two as a rule, one on the mesh's own border, more along
