@@ -15,8 +15,6 @@ struct FrontNode {
   std::uint32_t prev = 0, next = 0;
   std::uint32_t opposite = kNone;  ///< third vertex of the decoded face behind the edge; kNone on the chart's border
   std::uint32_t live = kNone;      ///< where live() lists it; kNone when it is not on the front any more
-  std::uint32_t bucket = kNone;    ///< of the queue; kNone when it is not queued
-  std::uint32_t older = kNone, newer = kNone;  ///< neighbours in the bucket
 };
 
 /// The front: all loops between the decoded part of a chart and the rest, as rings of nodes with the rest on the left,
@@ -26,10 +24,13 @@ class DenseFront {
  public:
   static constexpr std::uint32_t kBuckets = 64;
 
-  DenseFront() { newest_.fill(kNone); }
+  DenseFront() {
+    for (std::uint32_t bucket = 0; bucket < kBuckets; ++bucket) queue_.push_back({bucket, bucket});
+  }
 
   void reserve(std::size_t nodes) {
     nodes_.reserve(nodes);
+    queue_.reserve(kBuckets + nodes);
     live_.reserve(nodes);
   }
 
@@ -46,6 +47,7 @@ class DenseFront {
     fresh.opposite = opposite;
     fresh.live = static_cast<std::uint32_t>(live_.size());
     nodes_.push_back(fresh);
+    queue_.push_back({kBuckets + node, kBuckets + node});
     live_.push_back(node);
     return node;
   }
@@ -68,41 +70,46 @@ class DenseFront {
   /// Queues a node, again if need be, ahead of all others of its bucket, which is below kBuckets.
   void queue(std::uint32_t node, std::uint32_t bucket) {
     unqueue(node);
-    FrontNode& n = nodes_[node];
-    n.bucket = bucket;
-    n.older = newest_[n.bucket];
-    n.newer = kNone;
-    if (n.older != kNone) nodes_[n.older].newer = node;
-    newest_[n.bucket] = node;
-    filled_ |= std::uint64_t{1} << n.bucket;
+    const std::uint32_t place = kBuckets + node, older = queue_[bucket].older;
+    queue_[place] = {older, bucket};
+    queue_[older].newer = place;
+    queue_[bucket].older = place;
+    filled_ |= std::uint64_t{1} << bucket;
   }
 
   /// Takes the newest node of the smallest angles from the queue; kNone when the queue, hence the front, is empty.
   std::uint32_t pop() {
-    if (filled_ == 0) return kNone;
-    const std::uint32_t node = newest_[static_cast<std::size_t>(std::countr_zero(filled_))];
-    unqueue(node);
-    return node;
+    while (filled_ != 0) {
+      const auto bucket = static_cast<std::size_t>(std::countr_zero(filled_));
+      const std::uint32_t place = queue_[bucket].older;
+      if (place != bucket) {
+        unqueue(place - kBuckets);
+        return place - kBuckets;
+      }
+      filled_ &= filled_ - 1;
+    }
+    return kNone;
   }
 
  private:
   void unqueue(std::uint32_t node) {
-    FrontNode& n = nodes_[node];
-    if (n.bucket == kNone) return;
-    if (n.older != kNone) nodes_[n.older].newer = n.newer;
-    if (n.newer != kNone) {
-      nodes_[n.newer].older = n.older;
-    } else {
-      newest_[n.bucket] = n.older;
-      if (n.older == kNone) filled_ &= ~(std::uint64_t{1} << n.bucket);
-    }
-    n.bucket = kNone;
+    const std::uint32_t place = kBuckets + node;
+    const Queued at = queue_[place];
+    queue_[at.older].newer = at.newer;
+    queue_[at.newer].older = at.older;
+    queue_[place] = {place, place};
   }
+
+  /// Neighbours in a ring.
+  struct Queued {
+    std::uint32_t older, newer;
+  };
 
   std::vector<FrontNode> nodes_;
   std::vector<std::uint32_t> live_;
-  std::array<std::uint32_t, kBuckets> newest_;
-  std::uint64_t filled_ = 0;
+  /// Rings of buckets, whose numbers come first, and the nodes in them; a node that is not queued is a ring of its own.
+  std::vector<Queued> queue_;
+  std::uint64_t filled_ = 0;  ///< buckets that may have nodes
 };
 
 }  // namespace ramcdb::codec

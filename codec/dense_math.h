@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -7,61 +8,79 @@
 
 #include "ramcdb/geometry.h"
 
-/// Arithmetic of the dense coder. Encoder and decoder must round alike on every machine, so only + - * / and sqrt are
-/// used, which IEEE 754 fixes to the last bit, and comparisons; no angle functions, no fused multiply-add.
+/// Arithmetic of the dense coder. Encoder and decoder must round alike on every machine, so only + - * / and sqrt of
+/// 32-bit floats are used, which IEEE 754 fixes to the last bit, and comparisons; no angle functions, no fused
+/// multiply-add. Vectors are four lanes that the compiler keeps in one register where there are such.
 namespace ramcdb::codec {
 
-struct Vec {
-  double x = 0, y = 0, z = 0;
+using Float4 = float __attribute__((vector_size(16)));
+using Int4 = std::int32_t __attribute__((vector_size(16)));
 
-  double operator[](int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
-  friend Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-  friend Vec operator*(Vec a, double s) { return {a.x * s, a.y * s, a.z * s}; }
+class Vec {
+ public:
+  constexpr Vec() = default;
+  constexpr Vec(float x, float y, float z) : lanes_{x, y, z, 0} {}
+  /// The fourth lane is never looked at.
+  explicit constexpr Vec(Float4 lanes) : lanes_(lanes) {}
+
+  float operator[](int axis) const { return lanes_[axis]; }
+
+  friend Vec operator+(Vec a, Vec b) { return Vec(a.lanes_ + b.lanes_); }
+  friend Vec operator*(Vec a, float s) { return Vec(a.lanes_ * Float4{s, s, s, s}); }
+  friend float dot(Vec a, Vec b) {
+    const Float4 products = a.lanes_ * b.lanes_;
+    return products[0] + products[1] + products[2];
+  }
+  friend Vec cross(Vec a, Vec b) { return Vec(turned(a.lanes_ * turned(b.lanes_) - turned(a.lanes_) * b.lanes_)); }
+
+ private:
+  /// y, z, x.
+  static Float4 turned(Float4 v) { return __builtin_shufflevector(v, v, 1, 2, 0, 3); }
+
+  Float4 lanes_{};
 };
 
-inline double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline Vec cross(Vec a, Vec b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-inline double squared_length(Vec a) { return dot(a, a); }
+inline float squared_length(Vec a) { return dot(a, a); }
 
-/// From one lattice point to another. Coordinates stay below 2^30, so this is exact.
+/// From one lattice point to another: exact below 2^24, rounded beyond.
+inline Vec difference(Int4 to, Int4 from) { return Vec(__builtin_convertvector(to - from, Float4)); }
 inline Vec difference(LatticePoint to, LatticePoint from) {
-  return {static_cast<double>(to.x - from.x), static_cast<double>(to.y - from.y), static_cast<double>(to.z - from.z)};
+  return difference(Int4{to.x, to.y, to.z, 0}, Int4{from.x, from.y, from.z, 0});
 }
 
 /// `v` at length one, or `otherwise` when it has no length.
 inline Vec unit_or(Vec v, Vec otherwise) {
-  const double squared = squared_length(v);
+  const float squared = squared_length(v);
   return squared > 0 ? v * (1 / std::sqrt(squared)) : otherwise;
 }
 
 /// The size of x >= 0 in half octaves: 0 below 1, then 1 for [1, 1.5), 2 for [1.5, 2), 3 for [2, 3) ...
-inline int half_octave(double x) {
+inline int half_octave(float x) {
   if (!(x >= 1)) return 0;
-  const auto bits = std::bit_cast<std::uint64_t>(x);
-  return static_cast<int>(bits >> 51) - 2 * 1023 + 1;
+  return static_cast<int>(std::bit_cast<std::uint32_t>(x) >> 22) - 2 * 127 + 1;
 }
 
-/// The nearest whole number, halves up. REQUIRES: |x| < 2^31.
-inline std::int32_t round_half_up(double x) {
-  const double up = x + 0.5;
-  const auto whole = static_cast<std::int64_t>(up);
-  return static_cast<std::int32_t>(whole - (up < static_cast<double>(whole) ? 1 : 0));
+/// floor(x + 1/2), the sum rounded. REQUIRES: |x| < 2^31.
+inline std::int32_t round_half_up(float x) {
+  const float up = x + 0.5F;
+  const auto whole = static_cast<std::int32_t>(up);
+  return whole - (up < static_cast<float>(whole) ? 1 : 0);
 }
 
 /// The angle, in quadrants [0, 4), by which `from` must turn counter-clockwise about `normal` to point along `to`; 0
 /// when one of them has no length. Its size is that in space, the normal only decides which way round. The polynomial
 /// is within 0.005 quadrants of the true angle, which is all that an order of corners needs.
-inline double corner_angle(Vec from, Vec to, Vec normal) {
-  const double lengths = squared_length(from) * squared_length(to);
+inline float corner_angle(Vec from, Vec to, Vec normal) {
+  const float lengths = squared_length(from) * squared_length(to);
   if (!(lengths > 0)) return 0;
-  const double c = dot(from, to) / std::sqrt(lengths);
-  const double c2 = c * c;
-  const double s = c2 < 1 ? std::sqrt(1 - c2) : 0;
-  const double ac = c < 0 ? -c : c;
-  const double u = 2 * (s / (s + ac)) - 1;
-  const double t = 0.5 + u * (0.31831 + 0.18169 * (u * u));
-  const double half_turn = c >= 0 ? t : 2 - t;  // in [0, 2]
-  const double angle = dot(normal, cross(from, to)) < 0 ? 4 - half_turn : half_turn;
+  const float c = dot(from, to) / std::sqrt(lengths);
+  const float c2 = c * c;
+  const float s = c2 < 1 ? std::sqrt(1 - c2) : 0;
+  const float ac = c < 0 ? -c : c;
+  const float u = 2 * (s / (s + ac)) - 1;
+  const float t = 0.5F + u * (0.31831F + 0.18169F * (u * u));
+  const float half_turn = c >= 0 ? t : 2 - t;  // in [0, 2]
+  const float angle = dot(normal, cross(from, to)) < 0 ? 4 - half_turn : half_turn;
   return angle < 4 ? angle : 0;
 }
 
@@ -86,14 +105,13 @@ inline constexpr auto kSixteenth = [] {
 /// roots, from the square of its cosine alone. What the queue of corners needs, which are turned to more often than
 /// coded.
 inline std::uint32_t corner_sixteenth(Vec from, Vec to, Vec normal) {
-  const double lengths = squared_length(from) * squared_length(to);
+  const float lengths = squared_length(from) * squared_length(to);
   if (!(lengths > 0)) return 0;
-  const double d = dot(from, to);
-  const double place = 512 - 512 * (d * (d < 0 ? -d : d) / lengths);
-  const std::uint32_t sixteenth = dense_math_detail::kSixteenth[static_cast<std::size_t>(place < 0      ? 0
-                                                                                         : place > 1024 ? 1024
-                                                                                                        : place)];
-  return dot(normal, cross(from, to)) < 0 ? 63 - sixteenth : sixteenth;
+  const float d = dot(from, to);
+  const float place = 512 - 512 * (d * std::abs(d) / lengths);
+  const auto at = static_cast<std::size_t>(static_cast<int>(std::min(std::max(place, 0.0F), 1024.0F)));
+  const std::uint32_t sixteenth = dense_math_detail::kSixteenth[at];
+  return sixteenth ^ (63U * (dot(normal, cross(from, to)) < 0));  // 63 less it, or itself
 }
 
 }  // namespace ramcdb::codec

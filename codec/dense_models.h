@@ -33,7 +33,7 @@ class FanSizeModel {
 
   /// \param angle in quadrants \param faces of the pivot \param max the largest size that can be meant
   template <class Coder>
-  std::uint32_t code(Coder& coder, double angle, std::uint32_t faces, bool on_border, std::size_t max,
+  std::uint32_t code(Coder& coder, float angle, std::uint32_t faces, bool on_border, std::size_t max,
                      std::uint32_t size) {
     const auto angle_class = std::min<std::size_t>(39, static_cast<std::size_t>(10 * angle));
     auto& bits = bits_[angle_class][on_border ? 9 : std::min<std::size_t>(8, faces)];
@@ -62,9 +62,9 @@ class MissModel {
 
   /// \param fraction prediction less its rounded value, in [-1/2, 1/2]
   template <class Coder>
-  std::int32_t code(Coder& coder, double fraction, std::int32_t miss) {
-    const double size = fraction < 0 ? -fraction : fraction;
-    const std::size_t third = size < 0.17 ? 0 : size < 0.33 ? 1 : 2;
+  std::int32_t code(Coder& coder, float fraction, std::int32_t miss) {
+    const float size = fraction < 0 ? -fraction : fraction;
+    const std::size_t third = std::size_t{size >= 0.17F} + std::size_t{size >= 0.33F};
     if (!coder.code(nonzero_[third], miss != 0)) return 0;
     const bool flip = fraction < 0;
     const bool negative = coder.code(negative_[third], (miss < 0) != flip) != flip;
@@ -113,9 +113,9 @@ struct DenseModels {
   std::array<MissModel, 3 * kActivities * kEdgeSizes> misses;
 
   /// Begins with what is built in: for fine lattices, whose misses have many bits, and for others.
-  explicit DenseModels(bool is_fine = false) {
-    const std::uint16_t* next = kBuiltInPrior[is_fine].data();
-    visit_built_in([&](AdaptiveBit& bit) { bit = built_in_bit(*next++); });
+  static const DenseModels& built_in(bool is_fine) {
+    static const std::array<DenseModels, 2> both{DenseModels(kBuiltInPrior[0]), DenseModels(kBuiltInPrior[1])};
+    return both[is_fine];
   }
 
   template <class Visit>
@@ -129,6 +129,13 @@ struct DenseModels {
   /// \param kind 0, 1: first and second tangential axis, 2: the axis along the normal
   MissModel& miss(int kind, int activity, int edge_size) {
     return misses[static_cast<std::size_t>((kind * kActivities + activity) * kEdgeSizes + edge_size)];
+  }
+
+ private:
+  template <class Prior>
+  explicit DenseModels(const Prior& prior) {
+    const std::uint16_t* next = prior.data();
+    visit_built_in([&](AdaptiveBit& bit) { bit = built_in_bit(*next++); });
   }
 };
 

@@ -19,26 +19,29 @@ struct FanPlace {
   std::uint32_t behind_current = kNone;  ///< third vertex of the decoded face at edge current-pivot, if there is one
   std::uint32_t behind_next = kNone;     ///< ... at edge pivot-next
   std::uint32_t edges_left = 1;          ///< edges still missing in the corner, this one included; >= 1
-  double angle = 0;                      ///< of the corner, in quadrants
+  float angle = 0;                       ///< of the corner, in quadrants
   Vec normal;                            ///< unit normal at the pivot
 };
+
+/// The axes that come after axis i are kAxes[i], kAxes[i + 1] and, again, i = kAxes[i + 2].
+inline constexpr std::array<int, 5> kAxes{1, 2, 0, 1, 2};
 
 /// What a new vertex is guessed from, apart from weights.
 struct FanVectors {
   std::array<Vec, 6> vectors;  ///< a, b, c, d, N x a, N x b of FanPrediction
-  double reach = 0;            ///< |a| + |b|
+  float reach = 0;             ///< |a| + |b|
   int main_axis = 0;           ///< that of the largest component of N
   std::size_t fan_class = 0, plane_class = 0;
 
   FanVectors(const DenseSurface& surface, const FanPlace& place);
 
   /// The axis that is coded k-th, k = 0, 1, 2.
-  [[nodiscard]] int axis(int k) const { return (main_axis + 1 + k) % 3; }
+  [[nodiscard]] int axis(int k) const { return kAxes[static_cast<std::size_t>(main_axis + k)]; }
 };
 
-/// The height along `main_axis` of the tangent plane at a vertex over two known coordinates of `point`; nothing when it
-/// is too steep to tell.
-[[nodiscard]] std::optional<double> plane_height(const DenseVertex& vertex, int main_axis, LatticePoint point);
+/// The height along `main_axis` of the plane through `at` with some normal, over the coordinates x and y of the other
+/// axes, in their order; nothing when it is too steep to tell.
+[[nodiscard]] std::optional<float> plane_height(const Vec& normal, const Vec& at, int main_axis, float x, float y);
 
 /// Guesses a new vertex from the fan around its pivot.
 ///
@@ -48,28 +51,26 @@ struct FanVectors {
 ///
 /// Coordinates are coded one after the other; the one that N mostly points along comes last, since the surface tells
 /// most about it once the others are known: it is moved into the plane through the guess, and then by a weighted sum
-/// of what the tangent planes at pivot, current and next say.
+/// of what the tangent planes at pivot, current and next say. Everything is relative to the pivot.
 class FanPrediction {
  public:
   /// \param activity_scale multiplies lengths before they choose contexts
-  FanPrediction(const DenseSurface& surface, const CoderTables& tables, const FanPlace& place, double scale);
+  FanPrediction(const DenseSurface& surface, const CoderTables& tables, const FanPlace& place, float scale);
 
   /// The axis that is coded k-th, k = 0, 1, 2.
   [[nodiscard]] int axis(int k) const { return fan_.axis(k); }
-  /// The guess for coordinate axis(k). REQUIRES: the coordinates before it were given to known().
-  [[nodiscard]] double guess(int k) const;
-  /// Tells coordinate axis(k), which guess(k) was made for.
+  /// The guess for coordinate axis(k), less the pivot's. REQUIRES: the coordinates before it were given to known().
+  [[nodiscard]] float guess(int k) const;
+  /// Tells coordinate axis(k), less the pivot's, which guess(k) was made for.
   void known(int k, std::int32_t coordinate);
-
-  [[nodiscard]] LatticePoint point() const { return point_; }
 
   /// Contexts of coordinate axis(k): how well predictions went around here (0..15), and how long edges are (0..9).
   [[nodiscard]] int activity(int k) const { return k < 2 ? tangential_activity_ : normal_activity_; }
   [[nodiscard]] int edge_size() const { return edge_size_; }
 
  private:
-  void choose_contexts(double scale);
-  [[nodiscard]] double plane_shift(std::uint32_t vertex, double from) const;
+  void choose_contexts(float scale);
+  [[nodiscard]] float plane_shift(std::uint32_t vertex, const Vec& at, float from) const;
 
   const DenseSurface& surface_;
   const FanPlace& place_;
@@ -77,8 +78,8 @@ class FanPrediction {
   const PlaneWeights& plane_weights_;
   Vec guess_;
   int tangential_activity_ = 0, normal_activity_ = 0, edge_size_ = 0;
-  LatticePoint point_;
-  std::array<double, 2> miss_{};  ///< coordinate less guess, not rounded, of the first two axes
+  std::array<float, 2> known_{};  ///< the first two coordinates
+  std::array<float, 2> miss_{};   ///< coordinate less guess, not rounded, of the first two axes
 };
 
 // ---- definitions: of the innermost loop, so in the header ----
@@ -86,10 +87,10 @@ class FanPrediction {
 namespace dense_predictor_detail {
 
 inline std::size_t fan_class_of(const FanPlace& place) {
-  const double degrees = 90 * place.angle / (place.edges_left + 1.0);
-  constexpr std::array<double, 7> kLimits{36, 46, 54, 62, 70, 82, 98};
+  const float degrees = 90 * place.angle / (static_cast<float>(place.edges_left) + 1);
+  constexpr std::array<float, 7> kLimits{36, 46, 54, 62, 70, 82, 98};
   std::size_t angle_class = 0;
-  while (angle_class < kLimits.size() && degrees >= kLimits[angle_class]) ++angle_class;
+  for (const float limit : kLimits) angle_class += degrees >= limit;
   return ((std::min(place.edges_left, 3u) - 1) * 8 + angle_class) * 4 + 2 * (place.behind_current != kNone) +
          (place.behind_next != kNone);
 }
@@ -100,12 +101,12 @@ inline std::size_t plane_class_of(const FanPlace& place, bool pivot_on_border) {
 }
 
 inline int axis_of_largest(Vec v) {
-  const double x = std::abs(v.x), y = std::abs(v.y), z = std::abs(v.z);
+  const float x = std::abs(v[0]), y = std::abs(v[1]), z = std::abs(v[2]);
   if (x >= y) return x >= z ? 0 : 2;
   return y >= z ? 1 : 2;
 }
 
-inline constexpr double kWeightUnit = 1.0 / 128;
+inline constexpr float kWeightUnit = 1.0F / 128;
 
 }  // namespace dense_predictor_detail
 
@@ -113,8 +114,8 @@ inline FanVectors::FanVectors(const DenseSurface& surface, const FanPlace& place
     : main_axis(dense_predictor_detail::axis_of_largest(place.normal)),
       fan_class(dense_predictor_detail::fan_class_of(place)),
       plane_class(dense_predictor_detail::plane_class_of(place, surface.on_border(place.pivot))) {
-  const LatticePoint pivot = surface[place.pivot].position;
-  const auto from_pivot = [&](std::uint32_t v) { return v == kNone ? Vec{} : difference(surface[v].position, pivot); };
+  const DenseVertex& pivot = surface[place.pivot];
+  const auto from_pivot = [&](std::uint32_t v) { return v == kNone ? Vec{} : difference(surface[v], pivot); };
   const Vec a = from_pivot(place.current), b = from_pivot(place.next);
   vectors = {a,
              b,
@@ -126,21 +127,17 @@ inline FanVectors::FanVectors(const DenseSurface& surface, const FanPlace& place
 }
 
 inline FanPrediction::FanPrediction(const DenseSurface& surface, const CoderTables& tables, const FanPlace& place,
-                                    double scale)
-    : surface_(surface),
-      place_(place),
-      fan_(surface, place),
-      plane_weights_(tables.plane[fan_.plane_class]),
-      guess_(difference(surface[place.pivot].position, {})) {
+                                    float scale)
+    : surface_(surface), place_(place), fan_(surface, place), plane_weights_(tables.plane[fan_.plane_class]) {
   const FanWeights& weights = tables.fan[fan_.fan_class];
   for (std::size_t i = 0; i < weights.size(); ++i)
     guess_ = guess_ + fan_.vectors[i] * (weights[i] * dense_predictor_detail::kWeightUnit);
   choose_contexts(scale);
 }
 
-inline void FanPrediction::choose_contexts(double scale) {
-  double tangential = 0, normal = 0, count = 0;
-  const auto consult = [&](std::uint32_t v, double weight) {
+inline void FanPrediction::choose_contexts(float scale) {
+  float tangential = 0, normal = 0, count = 0;
+  const auto consult = [&](std::uint32_t v, float weight) {
     if (v == kNone || surface_[v].tangential < 0) return;
     tangential += weight * surface_[v].tangential;
     normal += weight * surface_[v].normal_miss;
@@ -155,46 +152,49 @@ inline void FanPrediction::choose_contexts(double scale) {
   constexpr int kUnknown = DenseModels::kActivities - 1;
   tangential_activity_ = normal_activity_ = kUnknown;
   if (count > 0) {
-    const double mean = 4 * scale / count;
+    const float mean = 4 * scale / count;
     tangential_activity_ = std::min(kUnknown - 1, half_octave(tangential * mean));
     normal_activity_ = std::min(kUnknown - 1, half_octave(normal * mean));
   }
   edge_size_ = std::clamp(half_octave(fan_.reach * scale) / 2 - 1, 0, DenseModels::kEdgeSizes - 1);
 }
 
-inline double FanPrediction::guess(int k) const {
-  double value = guess_[axis(k)];
+inline float FanPrediction::guess(int k) const {
+  float value = guess_[axis(k)];
   if (k == 2) {
     const Vec& n = place_.normal;
     value -= (n[axis(0)] * miss_[0] + n[axis(1)] * miss_[1]) / n[fan_.main_axis];
-    const std::array<double, 3> shifts{plane_shift(place_.pivot, value), plane_shift(place_.current, value),
-                                       plane_shift(place_.next, value)};
+    const std::array<float, 3> shifts{plane_shift(place_.pivot, {}, value),
+                                      plane_shift(place_.current, fan_.vectors[0], value),
+                                      plane_shift(place_.next, fan_.vectors[1], value)};
     for (std::size_t i = 0; i < shifts.size(); ++i)
       value += shifts[i] * (plane_weights_[i] * dense_predictor_detail::kWeightUnit);
   }
   // Weights of a hostile table and vast lattices end here; no coordinate lies beyond.
-  constexpr double kLimit = kMaxLatticeCoordinate;
+  constexpr auto kLimit = static_cast<float>(kMaxLatticeCoordinate);
   return std::clamp(value, -kLimit, kLimit);
 }
 
 inline void FanPrediction::known(int k, std::int32_t coordinate) {
-  if (k < 2) miss_[static_cast<std::size_t>(k)] = coordinate - guess(k);
-  point_[axis(k)] = coordinate;
+  if (k < 2) {
+    const auto at = static_cast<std::size_t>(k);
+    known_[at] = static_cast<float>(coordinate);
+    miss_[at] = known_[at] - guess_[axis(k)];
+  }
 }
 
-/// How far above `from` the tangent plane at a vertex passes, never more than the fan's reach; 0 when it does not tell.
-inline double FanPrediction::plane_shift(std::uint32_t vertex, double from) const {
-  const std::optional<double> height = plane_height(surface_[vertex], fan_.main_axis, point_);
+/// How far above `from` the tangent plane at a vertex, which is at `at`, passes, never more than the fan's reach; 0
+/// when it does not tell.
+inline float FanPrediction::plane_shift(std::uint32_t vertex, const Vec& at, float from) const {
+  const auto height = plane_height(surface_[vertex].normal, at, fan_.main_axis, known_[0], known_[1]);
   return height ? std::clamp(*height - from, -fan_.reach, fan_.reach) : 0;
 }
 
-inline std::optional<double> plane_height(const DenseVertex& vertex, int main_axis, LatticePoint point) {
-  const double up = vertex.normal[main_axis];
-  if (!(up * up * 16 > squared_length(vertex.normal))) return std::nullopt;
-  const int x = (main_axis + 1) % 3, y = (main_axis + 2) % 3;
-  return vertex.position[main_axis] - (vertex.normal[x] * (static_cast<double>(point[x]) - vertex.position[x]) +
-                                       vertex.normal[y] * (static_cast<double>(point[y]) - vertex.position[y])) /
-                                          up;
+inline std::optional<float> plane_height(const Vec& normal, const Vec& at, int main_axis, float x, float y) {
+  const float up = normal[main_axis];
+  if (!(up * up * 16 > squared_length(normal))) return std::nullopt;
+  const int first = kAxes[static_cast<std::size_t>(main_axis)], second = kAxes[static_cast<std::size_t>(main_axis) + 1];
+  return at[main_axis] - (normal[first] * (x - at[first]) + normal[second] * (y - at[second])) / up;
 }
 
 }  // namespace ramcdb::codec

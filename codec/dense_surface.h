@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <utility>
 #include <vector>
@@ -19,13 +21,22 @@ struct ChartCounts {
   std::uint32_t faces = 0;
 };
 
-struct DenseVertex {
+struct alignas(16) DenseVertex {
   LatticePoint position{};
   std::uint32_t faces = 0;  ///< decoded so far
-  Vec normal{};             ///< sum of the cross products of the decoded faces
-  double tangential = -1;   ///< how far the predictions of the two tangential coordinates missed; -1: not predicted
-  double normal_miss = -1;  ///< twice that of the coordinate along the normal
+  Vec normal{};             ///< sum of the cross products of the decoded faces, times 2^-32
+  float tangential = -1;    ///< how far the predictions of the two tangential coordinates missed; -1: not predicted
+  float normal_miss = -1;   ///< twice that of the coordinate along the normal
 };
+
+/// From one vertex to another. (The fourth lane is the number of faces, and says nothing.)
+inline Vec difference(const DenseVertex& to, const DenseVertex& from) {
+  static_assert(offsetof(DenseVertex, position) == 0 && offsetof(DenseVertex, faces) == 12);
+  Int4 a, b;
+  std::memcpy(&a, &to, sizeof a);
+  std::memcpy(&b, &from, sizeof b);
+  return difference(a, b);
+}
 
 /// The part of a chart that is already decoded; border vertices come first. It never exceeds the declared counts: what
 /// would is the work of a hostile stream, and throws corrupt.
@@ -67,7 +78,7 @@ class DenseSurface {
     if (a == b || b == c || c == a) throw Error(Errc::corrupt, "a face of a chart has a vertex twice");
     faces_.push_back({a, b, c});
     DenseVertex &va = vertices_[a], &vb = vertices_[b], &vc = vertices_[c];
-    const Vec area = cross(difference(vb.position, va.position), difference(vc.position, va.position));
+    const Vec area = cross(difference(vb, va), difference(vc, va)) * 0x1p-32F;  // sums of squares stay finite
     for (DenseVertex* v : {&va, &vb, &vc}) {
       v->normal = v->normal + area;
       ++v->faces;

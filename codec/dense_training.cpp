@@ -14,8 +14,8 @@ namespace ramcdb::codec {
 
 namespace {
 
-constexpr double kWeightOne = 128;  ///< of weights
-constexpr int kRounds = 4;          ///< of reweighting
+constexpr float kWeightOne = 128;  ///< of weights
+constexpr int kRounds = 4;         ///< of reweighting
 /// Fewer samples than that determine no six weights.
 constexpr std::size_t kLeastSamples = 32;
 /// About what a class of own weights takes in the table.
@@ -25,7 +25,7 @@ constexpr std::int64_t kFanClassBits = 42, kPlaneClassBits = 21;
 struct Sample {
   FanVectors fan;
   Vec normal;
-  std::array<double, 3> planes;  ///< heights along the main axis over the vertex, of pivot, current and next
+  std::array<float, 3> planes;  ///< heights along the main axis over the vertex, of pivot, current and next
   std::array<bool, 3> has_plane;
   Vec target;
 };
@@ -43,13 +43,14 @@ class TrainingCoder {
 
   void observe(const DenseSurface& surface, const FanPlace& place, LatticePoint actual) {
     Sample sample{FanVectors(surface, place), place.normal, {}, {}, {}};
-    const LatticePoint pivot = surface[place.pivot].position;
-    sample.target = difference(actual, pivot);
+    sample.target = difference(actual, surface[place.pivot].position);
     const std::array<std::uint32_t, 3> around{place.pivot, place.current, place.next};
     for (std::size_t i = 0; i < around.size(); ++i) {
-      const auto height = plane_height(surface[around[i]], sample.fan.main_axis, actual);
+      const Vec at = difference(surface[around[i]], surface[place.pivot]);
+      const auto height = plane_height(surface[around[i]].normal, at, sample.fan.main_axis,
+                                       sample.target[sample.fan.axis(0)], sample.target[sample.fan.axis(1)]);
       sample.has_plane[i] = height.has_value();
-      if (height) sample.planes[i] = *height - pivot[sample.fan.main_axis];
+      if (height) sample.planes[i] = *height;
     }
     samples_.push_back(sample);
   }
@@ -117,7 +118,8 @@ std::array<double, 3> errors_of(const Sample& sample, const FanWeights& weights)
 std::array<double, 3> plane_shifts(const Sample& sample, double from) {
   std::array<double, 3> shifts{};
   for (std::size_t i = 0; i < 3; ++i)
-    if (sample.has_plane[i]) shifts[i] = std::clamp(sample.planes[i] - from, -sample.fan.reach, sample.fan.reach);
+    if (sample.has_plane[i])
+      shifts[i] = std::clamp<double>(sample.planes[i] - from, -sample.fan.reach, sample.fan.reach);
   return shifts;
 }
 

@@ -57,8 +57,8 @@ class DenseWalk {
         context_(context),
         surface_(context.border, context.counts, context.expected),
         join_search_(surface_, front_, std::min(context.edge_exponent + 1, 31)),
-        models_(std::make_unique<DenseModels>(is_fine())),
-        scale_(1.0 / static_cast<double>(std::uint64_t{1} << std::max(0, context.edge_exponent - kScaledFrom))) {
+        models_(std::make_unique<DenseModels>(DenseModels::built_in(is_fine()))),
+        scale_(1 / static_cast<float>(std::uint64_t{1} << std::max(0, context.edge_exponent - kScaledFrom))) {
     front_.reserve(context.border.size() + context.expected.inner_vertices + 16);
   }
 
@@ -232,22 +232,21 @@ class DenseWalk {
     front_.queue(node, corner_sixteenth(to_next, to_prev, normal_at(node)));
   }
 
-  [[nodiscard]] double open_angle(std::uint32_t node, Vec normal) const {
+  [[nodiscard]] float open_angle(std::uint32_t node, Vec normal) const {
     const auto [to_next, to_prev] = sides(node);
     return corner_angle(to_next, to_prev, normal);
   }
-  [[nodiscard]] double open_angle(const FanPlace& place) const {
-    const LatticePoint p = surface_[place.pivot].position;
-    return corner_angle(difference(surface_[place.next].position, p), difference(surface_[place.current].position, p),
+  [[nodiscard]] float open_angle(const FanPlace& place) const {
+    const DenseVertex& pivot = surface_[place.pivot];
+    return corner_angle(difference(surface_[place.next], pivot), difference(surface_[place.current], pivot),
                         place.normal);
   }
 
   /// From a node to the next one and to the one before.
   [[nodiscard]] std::pair<Vec, Vec> sides(std::uint32_t node) const {
     const FrontNode& n = front_[node];
-    const LatticePoint p = surface_[n.vertex].position;
-    return {difference(surface_[front_[n.next].vertex].position, p),
-            difference(surface_[front_[n.prev].vertex].position, p)};
+    const DenseVertex& vertex = surface_[n.vertex];
+    return {difference(surface_[front_[n.next].vertex], vertex), difference(surface_[front_[n.prev].vertex], vertex)};
   }
 
   /// A vector along the surface normal at a node: of its own decoded faces or else of the nearest along the front that
@@ -288,25 +287,30 @@ class DenseWalk {
     }
     const std::uint64_t before = coder_.position();
     FanPrediction prediction(surface_, *context_.tables, place, scale_);
-    std::array<double, 3> sizes{};
+    const auto pivot = lanes(surface_[place.pivot].position), wanted = lanes(actual);
+    std::array<std::int32_t, 3> point{};
+    std::array<float, 3> sizes{};
     for (int k = 0; k < 3; ++k) {
       const int axis = prediction.axis(k);
-      const double guess = prediction.guess(k);
-      const std::int32_t rounded = round_half_up(guess);
+      const auto lane = static_cast<std::size_t>(axis);
+      const float guess = prediction.guess(k);
+      const std::int32_t step = round_half_up(guess);
+      const std::int32_t rounded = clamp_to_lattice(std::int64_t{pivot[lane]} + step);
       std::int32_t miss = 0;
       const std::optional<std::int32_t> found =
-          context_.aligned ? code_aligned(place, k, axis, actual[axis]) : std::nullopt;
+          context_.aligned ? code_aligned(place, k, axis, wanted[lane]) : std::nullopt;
       if (found) {
         miss = *found - rounded;
       } else {
         MissModel& model = models_->miss(k, prediction.activity(k), prediction.edge_size());
-        miss = model.code(coder_, guess - rounded, Coder::kEncodes ? actual[axis] - rounded : 0);
-        if (Coder::kEncodes && miss != 0) aligned_misses_ += is_aligned(place, axis, actual[axis]);
+        miss = model.code(coder_, guess - static_cast<float>(step), Coder::kEncodes ? wanted[lane] - rounded : 0);
+        if (Coder::kEncodes && miss != 0) aligned_misses_ += is_aligned(place, axis, wanted[lane]);
       }
-      prediction.known(k, in_box(std::int64_t{rounded} + miss, axis));
-      sizes[static_cast<std::size_t>(k)] = miss < 0 ? -static_cast<double>(miss) : miss;
+      point[lane] = in_box(std::int64_t{rounded} + miss, lane);
+      prediction.known(k, point[lane] - pivot[lane]);
+      sizes[static_cast<std::size_t>(k)] = std::abs(static_cast<float>(miss));
     }
-    DenseVertex vertex{prediction.point()};
+    DenseVertex vertex{std::bit_cast<LatticePoint>(point)};
     vertex.tangential = sizes[0] + sizes[1];
     vertex.normal_miss = 2 * sizes[2];
     surface_.add_vertex(vertex);
@@ -347,14 +351,17 @@ class DenseWalk {
     LatticePoint point;
     for (int a = 0; a < 3; ++a) {
       const std::int32_t step = models[static_cast<std::size_t>(a)].code(coder_, actual[a] - anchor[a]);
-      point[a] = in_box(std::int64_t{anchor[a]} + step, a);
+      point[a] = in_box(std::int64_t{anchor[a]} + step, static_cast<std::size_t>(a));
     }
     surface_.add_vertex({point});
     geometry_cost_ += coder_.position() - before;
   }
 
-  std::int32_t in_box(std::int64_t coordinate, int axis) const {
-    if (coordinate < context_.box.lo[axis] || coordinate > context_.box.hi[axis])
+  /// A point as its three coordinates, to be indexed without branches.
+  static std::array<std::int32_t, 3> lanes(LatticePoint p) { return std::bit_cast<std::array<std::int32_t, 3>>(p); }
+
+  std::int32_t in_box(std::int64_t coordinate, std::size_t axis) const {
+    if (coordinate < lo_[axis] || coordinate > hi_[axis])
       throw Error(Errc::corrupt, "a chart's vertex lies outside of the chart's range");
     return static_cast<std::int32_t>(coordinate);
   }
@@ -366,7 +373,8 @@ class DenseWalk {
   DenseFront front_;
   JoinSearch join_search_;
   std::unique_ptr<DenseModels> models_;
-  double scale_;
+  float scale_;
+  std::array<std::int32_t, 3> lo_ = lanes(context_.box.lo), hi_ = lanes(context_.box.hi);
   Vec loops_area_;
   std::array<std::size_t, 2> found_before_{};  ///< where the coordinates before of a vertex were found; 4: nowhere
   std::vector<std::uint32_t> touched_;         ///< nodes whose corners a fan changed

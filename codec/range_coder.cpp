@@ -40,10 +40,12 @@ Buffer RangeEncoder::finish() {
   return std::move(out_);
 }
 
-void RangeDecoder::shift_in_at_end() {
+std::uint32_t RangeDecoder::word_at_end(Bytes stream, std::size_t at) {
   // An encoder leaves out 8 bytes at most. Whoever needs more reads bytes that were never written.
-  if (read_ + 4 > stream_.size() + 8) refuse();
-  for (int i = 0; i < 4; ++i, ++read_) offset_ = offset_ << 8 | (read_ < stream_.size() ? stream_[read_] : 0u);
+  if (at + 4 > stream.size() + 8) refuse();
+  std::uint32_t word = 0;
+  for (std::size_t i = at; i < at + 4; ++i) word = word << 8 | (i < stream.size() ? stream[i] : 0u);
+  return word;
 }
 
 void RangeDecoder::finish() const {

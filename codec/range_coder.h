@@ -23,10 +23,10 @@ namespace range_coder_detail {
 
 inline constexpr int kRateLimit = 120;
 
-/// 65536 / (n + 1.6): how far the n-th observation moves a probability.
+/// 32768 / (n + 1.6): how far the n-th observation moves a probability.
 inline constexpr auto kRates = [] {
   std::array<std::uint16_t, kRateLimit + 1> rates{};
-  for (std::size_t n = 0; n < rates.size(); ++n) rates[n] = static_cast<std::uint16_t>(655360 / (10 * n + 16));
+  for (std::size_t n = 0; n < rates.size(); ++n) rates[n] = static_cast<std::uint16_t>(327680 / (10 * n + 16));
   return rates;
 }();
 
@@ -74,19 +74,22 @@ class AdaptiveBit {
  public:
   constexpr AdaptiveBit() = default;
   /// Starts from a probability that stands for `observations` earlier bits (at most 120).
-  constexpr AdaptiveBit(std::uint16_t p, std::uint16_t observations) : p_(p), n_(observations) {}
+  constexpr AdaptiveBit(std::uint16_t p, std::uint16_t observations)
+      : p_(std::clamp(p, kLeast, kMost)), n_(observations) {}
 
   /// In [48, 65488], so that no bit costs more than 10.5 bits or less than 1/1000 bit.
-  [[nodiscard]] std::uint32_t p_one() const { return std::clamp<std::uint32_t>(p_, 48, 65536 - 48); }
+  [[nodiscard]] std::uint32_t p_one() const { return p_; }
 
   void learn(bool bit) {
-    const int target = bit ? 65535 : 0;
-    const std::int64_t step = static_cast<std::int64_t>(target - p_) * range_coder_detail::kRates[n_];
-    p_ = static_cast<std::uint16_t>(p_ + (step >> 16));
+    const int target = bit ? kMost : kLeast;
+    const std::int32_t step = (target - p_) * range_coder_detail::kRates[n_];
+    p_ = static_cast<std::uint16_t>(p_ + (step >> 15));
     n_ = static_cast<std::uint16_t>(n_ + (n_ < range_coder_detail::kRateLimit));
   }
 
  private:
+  static constexpr std::uint16_t kLeast = 48, kMost = 65536 - 48;
+
   std::uint16_t p_ = 32768;
   std::uint16_t n_ = 0;
 };
@@ -210,10 +213,11 @@ class RangeDecoder {
       offset_ = offset_ << 32 | word;
       read_ += 4;
     } else {
-      shift_in_at_end();
+      offset_ = offset_ << 32 | word_at_end(stream_, read_);
+      read_ += 4;
     }
   }
-  void shift_in_at_end();
+  static std::uint32_t word_at_end(Bytes stream, std::size_t at);
   [[noreturn]] static void refuse();
 
   Bytes stream_;

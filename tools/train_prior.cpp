@@ -154,7 +154,7 @@ std::uint16_t packed(const Beta& beta) {
 
 /// Which bits are kin: they lean on each other where little was seen. One number per built-in bit.
 std::vector<std::size_t> kin() {
-  DenseModels models;
+  DenseModels models = DenseModels::built_in(false);
   std::vector<std::size_t> kin;
   std::size_t fan = 0, misses = 0, joins = 0;
   models.fan_size.visit_built_in([&](AdaptiveBit&) { ++fan; });

