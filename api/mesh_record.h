@@ -57,13 +57,15 @@ struct MeshRecord {
   /// The least box that surely holds all positions of a lattice box, model units: it is exact unless positions are kept
   /// to the last bit, which may lie half a step outside.
   [[nodiscard]] std::pair<Point, Point> bounds(const LatticeBox& box) const;
+  friend bool operator==(const MeshRecord&, const MeshRecord&) = default;
+
   /// The counter of a layer's bytes.
   [[nodiscard]] std::uint64_t& bytes_of_layer(std::uint16_t layer) {
     return layer == kExactLayer ? exact_bytes : layer_bytes;
   }
 };
 
-/// As CBOR with short keys.
+/// As bytes; api/mesh_record.cpp has the grammar.
 [[nodiscard]] Buffer encode_record(const MeshRecord& record);
 /// Throws corrupt, naming `where`.
 [[nodiscard]] MeshRecord decode_record(Bytes blob, std::string_view where);
