@@ -21,24 +21,30 @@ constexpr int kLloydIterations = 5;
 constexpr int kRefinements = 2;
 constexpr double kGrowthShare = 0.5;  // of the time, for the progress
 
-/// The default recipe (chartify/RECIPE.md).
+/// The default recipe (chartify/RECIPE.md), behind its first stage.
+void refine(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const Neighbours& neighbours,
+            const Progress& progress, const SizeLimits& limits, Partition& partition) {
+  FaceMover mover(twins, limits, partition);
+  rebalance(mover, limits, static_cast<std::uint32_t>(partition.sizes.size()));
+  split_oversized(mesh, neighbours, limits, partition);
+  for (int i = 0; i < kRefinements; ++i) {
+    progress(static_cast<double>(i) / kRefinements);
+    move_faces(mover);
+    straighten_borders(mesh, twins, limits, partition);
+  }
+  merge_pieces(neighbours, partition);
+}
+
 Partition refined_charts(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const Neighbours& neighbours,
                          const Regions& components, const Options& options) {
   const auto progress = [&](double done) {
     if (options.progress) options.progress(done);
   };
-  const SizeLimits limits(options.target_faces);
   Partition partition =
       grow_charts(mesh, neighbours, components, kLloydIterations, [&](double done) { progress(kGrowthShare * done); });
-  FaceMover mover(twins, limits, partition);
-  rebalance(mover, limits, static_cast<std::uint32_t>(partition.sizes.size()));
-  split_oversized(mesh, neighbours, limits, partition);
-  for (int i = 0; i < kRefinements; ++i) {
-    progress(kGrowthShare + (1 - kGrowthShare) * i / kRefinements);
-    move_faces(mover);
-    straighten_borders(mesh, twins, limits, partition);
-  }
-  merge_pieces(neighbours, partition);
+  refine(
+      mesh, twins, neighbours, [&](double done) { progress(kGrowthShare + (1 - kGrowthShare) * done); },
+      SizeLimits(options.target_faces), partition);
   return partition;
 }
 
@@ -75,17 +81,13 @@ void keep_polygons_whole(std::span<const std::uint32_t> polygon_of_face, Partiti
   }
 }
 
-}  // namespace
-
-Charts chartify(const IndexedMesh& mesh, const Options& options) {
+void require_target(const Options& options) {
   if (options.target_faces == 0 || options.target_faces > kMostTargetFaces)
     throw Error(Errc::invalid_argument, "charts of " + std::to_string(options.target_faces) + " faces", "chartify",
                 "aim at 1 to " + std::to_string(kMostTargetFaces) + " faces");
-  const std::vector<HalfEdge> twins = find_twins(mesh, group_half_edges(mesh));
-  const Neighbours neighbours = find_neighbours(twins);
-  const Regions components = find_components(neighbours, options.target_faces);
-  Partition partition = options.method == Method::paper ? paper_charts(mesh, twins, neighbours, components, options)
-                                                        : refined_charts(mesh, twins, neighbours, components, options);
+}
+
+Charts charts_of(const IndexedMesh& mesh, const Regions& components, const Options& options, Partition& partition) {
   pack_small_components(components, options.target_faces, partition);
   keep_polygons_whole(mesh.polygon_of_face, partition);
   renumber(partition);
@@ -95,6 +97,46 @@ Charts chartify(const IndexedMesh& mesh, const Options& options) {
   charts.chart_count = static_cast<std::uint32_t>(partition.sizes.size());
   if (options.progress) options.progress(1);
   return charts;
+}
+
+}  // namespace
+
+Charts chartify(const IndexedMesh& mesh, const Options& options) {
+  require_target(options);
+  const std::vector<HalfEdge> twins = find_twins(mesh, group_half_edges(mesh));
+  const Neighbours neighbours = find_neighbours(twins);
+  const Regions components = find_components(neighbours, options.target_faces);
+  Partition partition = options.method == Method::paper ? paper_charts(mesh, twins, neighbours, components, options)
+                                                        : refined_charts(mesh, twins, neighbours, components, options);
+  return charts_of(mesh, components, options, partition);
+}
+
+Charts refine_cut(const IndexedMesh& mesh, std::vector<std::uint32_t> chart_of_face, const Options& options) {
+  require_target(options);
+  if (chart_of_face.size() != mesh.faces.size())
+    throw Error(Errc::invalid_argument, "a cut of another number of faces", "chartify");
+  const std::vector<HalfEdge> twins = find_twins(mesh, group_half_edges(mesh));
+  const Neighbours neighbours = find_neighbours(twins);
+  const Regions components = find_components(neighbours, options.target_faces);
+  Partition partition{std::move(chart_of_face), {}};
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    std::uint32_t& chart = partition.chart_of_face[f];
+    const std::uint32_t region = components.region_of_face[f];
+    if (region == kNone || components.charts[region] == 0) {
+      chart = kNone;
+      continue;
+    }
+    if (chart >= mesh.faces.size()) throw Error(Errc::invalid_argument, "a chart number beyond the faces", "chartify");
+    if (chart >= partition.sizes.size()) partition.sizes.resize(std::size_t{chart} + 1);
+    ++partition.sizes[chart];
+  }
+  renumber(partition);
+  merge_pieces(neighbours, partition);
+  const auto progress = [&](double done) {
+    if (options.progress) options.progress(done);
+  };
+  refine(mesh, twins, neighbours, progress, SizeLimits(options.target_faces), partition);
+  return charts_of(mesh, components, options, partition);
 }
 
 }  // namespace ramcdb::chartify

@@ -59,4 +59,11 @@ struct Charts {
 /// Errors: invalid_argument for a target out of range.
 [[nodiscard]] Charts chartify(const IndexedMesh& mesh, const Options& options);
 
+/// Likewise, from a first cut by somebody else: only the later stages of Method::refined. Components of less than half
+/// the target are packed as chartify() packs them, whatever the cut says of them.
+/// \param chart_of_face per face a chart, counted from 0
+/// Errors: invalid_argument for a target out of range, or another number of faces.
+[[nodiscard]] Charts refine_cut(const IndexedMesh& mesh, std::vector<std::uint32_t> chart_of_face,
+                                const Options& options);
+
 }  // namespace ramcdb::chartify

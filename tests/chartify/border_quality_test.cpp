@@ -69,6 +69,19 @@ TEST_P(BorderQuality, RefinedBordersAreShorterThanThoseOfThePaperAndOfGrowth) {
   EXPECT_LT(edges, borders_of(mesh, twins, paper.chart_of_face).edges * 9 / 10);
 }
 
+TEST_P(BorderQuality, StripesOfSomebodyElseBecomeChartsWithShorterBorders) {
+  const IndexedMesh mesh = canonical(GetParam().make());
+  const std::vector<HalfEdge> twins = twins_of(mesh);
+  Options options;
+  options.target_faces = 1000;
+  std::vector<std::uint32_t> stripes;  // of canonical order: of fair size, frayed, in pieces
+  for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) stripes.push_back(f / 1000);
+  const Charts refined = refine_cut(mesh, stripes, options);
+  check_charts(mesh, refined);
+  EXPECT_LT(borders_of(mesh, twins, refined.chart_of_face).edges, borders_of(mesh, twins, stripes).edges * 9 / 10);
+  for (const std::uint32_t faces : faces_of_charts(refined)) EXPECT_LE(faces, 1100U);
+}
+
 INSTANTIATE_TEST_SUITE_P(Families, BorderQuality,
                          testing::Values(Family{"Sphere", [] { return ramcdb::test::sphere(40'000); }},
                                          Family{"Torus", [] { return ramcdb::test::torus(40'000); }},

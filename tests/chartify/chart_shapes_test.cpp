@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "chartify/hilbert_cells.h"
+#include "ramcdb/error.h"
 #include "tests/chartify/chart_checks.h"
 
 namespace ramcdb::chartify::test {
@@ -45,6 +46,14 @@ std::string name_of(const testing::TestParamInfo<std::tuple<Case, Method>>& info
 /// Meshes of every shape, by both methods, cut coarse and fine.
 class ChartShapes : public testing::TestWithParam<std::tuple<Case, Method>> {};
 
+/// Faces scattered over charts, and all in one.
+void check_foreign_cuts(const IndexedMesh& mesh, const Options& options) {
+  std::vector<std::uint32_t> scattered, one(mesh.faces.size(), 0);
+  for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) scattered.push_back(f * 7 % 5);
+  check_charts(mesh, refine_cut(mesh, scattered, options));
+  check_charts(mesh, refine_cut(mesh, one, options));
+}
+
 TEST_P(ChartShapes, EveryFaceInOneConnectedChart) {
   const IndexedMesh mesh = canonical(std::get<0>(GetParam()).make());
   Options options;
@@ -53,6 +62,7 @@ TEST_P(ChartShapes, EveryFaceInOneConnectedChart) {
     SCOPED_TRACE(target);
     options.target_faces = target;
     check_charts(mesh, chartify(mesh, options));
+    if (options.method == Method::refined) check_foreign_cuts(mesh, options);
   }
 }
 
@@ -85,6 +95,19 @@ TEST(ChartEdgeCases, EmptyMesh) {
     EXPECT_TRUE(charts.chart_of_face.empty());
     EXPECT_TRUE(charts.chart_of_isolated_vertex.empty());
   }
+}
+
+TEST(ChartEdgeCases, AForeignCutMustBeOne) {
+  const IndexedMesh mesh = canonical(ramcdb::test::sphere(500));
+  Options options;
+  options.target_faces = 100;
+  std::vector<std::uint32_t> cut(mesh.faces.size() - 1, 0);
+  EXPECT_THROW((void)refine_cut(mesh, cut, options), Error);
+  cut.push_back(~std::uint32_t{0});
+  EXPECT_THROW((void)refine_cut(mesh, cut, options), Error);
+  cut.back() = 0;
+  options.target_faces = 0;
+  EXPECT_THROW((void)refine_cut(mesh, cut, options), Error);
 }
 
 TEST(ChartEdgeCases, OneFace) {

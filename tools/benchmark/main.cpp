@@ -1,5 +1,5 @@
 // ramcdb-bench [--bits N] [--rounds N] [--chart-faces N,...] [--json FILE] [--plot FILE] [--coder FILE...]
-// [--lossless FILE...] [--store FILE...]
+// [--lossless FILE...] [--cut FILE...] [--store FILE...]
 //
 // Measures the coder against Draco, and the repository's costs, on mesh files. Tables as Markdown on standard output,
 // everything as JSON in a file. tools/bench builds it and chooses meshes.
@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "tools/benchmark/coder_bench.h"
+#include "tools/benchmark/cut_bench.h"
 #include "tools/benchmark/lossless_bench.h"
 #include "tools/benchmark/plot.h"
 #include "tools/benchmark/store_bench.h"
@@ -53,6 +54,9 @@ constexpr const char* kCoderHead =
     "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
 constexpr const char* kLosslessHead =
     "| mesh | coordinates | positions | XOR + zstd | ratio | everything |\n|---|---|---:|---:|---:|---:|\n";
+constexpr const char* kCutHead =
+    "| mesh | our charts | bits/vertex | METIS and our refinement | bits/vertex | ours to it |\n"
+    "|---|---:|---:|---:|---:|---:|\n";
 constexpr const char* kSummaryHead =
     "| ours, faces/chart | against | size, mean | worst | encode speed | decode speed "
     "|\n|---|---|---:|---:|---:|---:|\n";
@@ -148,6 +152,16 @@ json lossless_row(const LosslessFigures& f) {
           {"positions", f.positions}, {"everything", f.everything}, {"xor_zstd", f.xor_zstd}};
 }
 
+json cut_row(const CutFigures& f) {
+  const auto bpv = [&](std::uint64_t bytes) {
+    return 8 * static_cast<double>(bytes) / static_cast<double>(f.vertices);
+  };
+  fmt::print("| {} | {} | {:.3f} | {} | {:.3f} | {:.4f} |\n", f.mesh, f.charts, bpv(f.ours), f.metis_charts,
+             bpv(f.metis), bpv(f.ours) / bpv(f.metis));
+  return {{"mesh", f.mesh},  {"vertices", f.vertices}, {"charts", f.charts}, {"metis_charts", f.metis_charts},
+          {"bytes", f.ours}, {"metis_bytes", f.metis}};
+}
+
 json store_row(const StoreFigures& f) {
   const double faces = static_cast<double>(f.info.faces);
   const double ratio = static_cast<double>(f.info.bytes.store) / static_cast<double>(f.info.bytes.payload);
@@ -172,7 +186,7 @@ int main(int argc, char** argv) try {
   CLI::App app("Size and speed of the coder against Draco, and what a repository costs");
   CoderOptions options;
   std::string json_file, plot;
-  std::vector<std::string> coder, lossless, store;
+  std::vector<std::string> coder, lossless, cut, store;
   app.add_option("--bits", options.bits, "Lattice bits along the largest extent");
   app.add_option("--rounds", options.rounds, "Rounds that medians are taken over")->check(CLI::PositiveNumber);
   app.add_option("--json", json_file, "Where all figures go");
@@ -180,15 +194,13 @@ int main(int argc, char** argv) try {
   app.add_option("--plot", plot, "Where a picture of sizes and speeds goes, as SVG");
   app.add_option("--coder", coder, "Meshes to code")->check(CLI::ExistingFile);
   app.add_option("--lossless", lossless, "Meshes to keep to the last bit")->check(CLI::ExistingFile);
+  app.add_option("--cut", cut, "Meshes to cut into charts by ours and by METIS")->check(CLI::ExistingFile);
   app.add_option("--store", store, "Meshes to keep, check out and commit to")->check(CLI::ExistingFile);
   CLI11_PARSE(app, argc, argv);
 
   const Scratch scratch;
-  json all = {{"bits", options.bits},
-              {"rounds", options.rounds},
-              {"coder", json::array()},
-              {"lossless", json::array()},
-              {"store", json::array()}};
+  json all = {{"bits", options.bits},      {"rounds", options.rounds}, {"coder", json::array()},
+              {"lossless", json::array()}, {"cut", json::array()},     {"store", json::array()}};
   std::vector<CoderFigures> figures;
   if (!coder.empty())
     fmt::print("\n## Coders: {} bits, speeds in Mtri/s on one thread, medians of {} rounds in turns\n", options.bits,
@@ -204,6 +216,18 @@ int main(int argc, char** argv) try {
     fmt::print("\n## Lossless positions, bits/vertex\n\n{}", kLosslessHead);
     for (const std::string& file : lossless)
       all["lossless"].push_back(lossless_row(measure_lossless(file, scratch.clear())));
+  }
+  if (!cut.empty()) {
+    fmt::print("\n## Cut into charts of {} faces: dense, everything counted\n\n{}", options.chart_faces.front(),
+               kCutHead);
+    double log_sum = 0;
+    for (const std::string& file : cut) {
+      const CutFigures f = measure_cut(file, options.bits, options.chart_faces.front());
+      log_sum += std::log(static_cast<double>(f.ours) / static_cast<double>(f.metis));
+      all["cut"].push_back(cut_row(f));
+      std::fflush(stdout);
+    }
+    fmt::print("\ngeometric mean: {:.4f}\n", std::exp(log_sum / static_cast<double>(cut.size())));
   }
   if (!store.empty()) {
     fmt::print("\n## Repository: one-chart checkout and commit\n\n{}", kStoreHead);
