@@ -71,13 +71,6 @@ std::vector<LatticePoint> snap_to(const Lattice& lattice, NumberType type, mesh_
   return points;
 }
 
-std::vector<Triangle> triangles_of(const mesh_file::MeshData& data, const mesh_file::Triangulation& cut) {
-  std::vector<Triangle> faces;
-  faces.reserve(cut.corners.size());
-  for (const Triangle& t : cut.corners) faces.push_back({data.corners[t[0]], data.corners[t[1]], data.corners[t[2]]});
-  return faces;
-}
-
 void note_topology(MeshRecord& record, const chartify::IndexedMesh& mesh) {
   const Topology t = analyze(mesh);
   record.vertices = mesh.positions.size();
@@ -204,7 +197,8 @@ ImportReport import_mesh(db::Store& store, const std::filesystem::path& file, co
   const mesh_file::Triangulation cut = mesh_file::triangulate(data);
   record.polygons = report.polygons = cut.polygons;
   report.polygons_as_fans = cut.fans;
-  chartify::CanonicalMesh canonical = chartify::canonical_order({std::move(points), triangles_of(data, cut)});
+  chartify::CanonicalMesh canonical =
+      chartify::canonical_order({std::move(points), mesh_file::triangles_of(data, cut)});
   const LayerSource layers(data, cut, canonical, record, exact, options.lossless || options.lossless_attributes);
   note_topology(record, canonical.mesh);
   for (const LatticePoint p : canonical.mesh.positions) record.range.add(p);

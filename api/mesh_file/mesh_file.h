@@ -69,6 +69,8 @@ struct Triangulation {
 /// Cuts faces with more than three corners by ear clipping where they are not convex. A face with n corners gives n - 2
 /// triangles, which hang together along its diagonals. Throws limit_exceeded beyond 2^32 - 1 corners.
 [[nodiscard]] Triangulation triangulate(const MeshData& mesh);
+/// Its triangles by their vertices.
+[[nodiscard]] std::vector<Triangle> triangles_of(const MeshData& mesh, const Triangulation& cut);
 
 struct FaceColor {
   std::uint8_t r = 0, g = 0, b = 0;

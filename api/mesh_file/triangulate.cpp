@@ -147,4 +147,11 @@ Triangulation triangulate(std::span<const Point> positions, std::span<const std:
 
 Triangulation triangulate(const MeshData& mesh) { return triangulate(mesh.positions, mesh.corners, mesh.face_sizes); }
 
+std::vector<Triangle> triangles_of(const MeshData& mesh, const Triangulation& cut) {
+  std::vector<Triangle> faces;
+  faces.reserve(cut.corners.size());
+  for (const Triangle& t : cut.corners) faces.push_back({mesh.corners[t[0]], mesh.corners[t[1]], mesh.corners[t[2]]});
+  return faces;
+}
+
 }  // namespace ramcdb::mesh_file

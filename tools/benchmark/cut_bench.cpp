@@ -90,11 +90,8 @@ std::uint64_t bytes_of(const mesh_file::MeshData& data, const chartify::Canonica
 CutFigures measure_cut(const std::filesystem::path& file, unsigned bits, std::uint32_t chart_faces) {
   std::vector<LatticePoint> points;
   mesh_file::MeshData data = read_snapped(file, bits, points);
-  if (!data.face_sizes.empty()) throw std::runtime_error(file.string() + ": the cut is measured on triangles");
-  std::vector<Triangle> faces;
-  for (std::size_t c = 0; c + 2 < data.corners.size(); c += 3)
-    faces.push_back({data.corners[c], data.corners[c + 1], data.corners[c + 2]});
-  const chartify::CanonicalMesh canonical = chartify::canonical_order({points, faces});
+  const chartify::CanonicalMesh canonical =
+      chartify::canonical_order({points, mesh_file::triangles_of(data, mesh_file::triangulate(data))});
   chartify::Options options;
   options.target_faces = chart_faces;
   const chartify::Charts ours = chartify::chartify(canonical.mesh, options);
