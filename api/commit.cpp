@@ -106,54 +106,32 @@ void put_edit(const EncodedEdit& edit, MeshId mesh, db::Writer& writer, MeshReco
   }
 }
 
+/// Puts the tables of another way of coding, and has the record name them.
+void put_coding(const NewCoding& coding, MeshId mesh, db::Writer& writer, MeshRecord& record) {
+  record.profile = coding.profile;
+  record.table = coding.table;
+  record.table_version = coding.table ? writer.version() : VersionId();
+  record.table_bytes -= coding.table_bytes_before;
+  if (!coding.table) return;
+  record.next_table = TableId(coding.table.value + 1);
+  record.table_bytes += coding.tables.size() + kBlobOverhead;
+  writer.put({db::Kind::table, mesh, coding.table.value, {}, 0}, coding.tables);
+}
+
 db::ChangedCharts changed_charts(MeshId mesh, const EncodedEdit& edit) {
   db::ChangedCharts changed{mesh, {}};
   for (const auto& [id, chart] : edit.charts) changed.charts.push_back(id);
   return changed;
 }
 
-std::string figures_of(const CommitReport& report, std::size_t charts) {
+std::string figures_of(const CommitReport& report, std::string_view operation, std::size_t charts) {
   VersionFigures figures;
-  figures.operation = "commit";
+  figures.operation = operation;
   figures.charts_touched = charts;
   figures.vertices_moved = report.vertices_moved;
   figures.max_displacement = report.max_displacement;
   figures.bytes_written = report.bytes_written;
   return encode_figures(figures);
-}
-
-/// Steps 1 to 6 of the commit protocol (db/FORMAT.md), with the writer's lock held throughout.
-void publish(const Snapshot::Impl& base, const EncodedEdit& edit, const CommitOptions& options,
-             const std::string& attempt, CommitReport& report) {
-  const auto writer = base.store().writer();
-  const VersionId tip = writer->tip(options.branch);
-  db::CommitInfo info;
-  info.roots = base.store().roots(tip);
-  const db::MeshRoot* found = root_of(info.roots, base.root().mesh);
-  if (!found)
-    throw Error(Errc::conflict, fmt::format("mesh {} is not on branch {}", base.root().name, options.branch),
-                fmt::format("version {}", tip.value), "commit to the branch that you checked out from");
-  const Snapshot::Impl at_tip(base.store_handle(), tip, *found);
-  report.conflicts = find_conflicts(at_tip.pages(), edit);
-  if (!report.conflicts.empty()) return;
-
-  MeshRecord record = at_tip.record();
-  put_edit(edit, base.root().mesh, *writer, record);
-  const db::MeshRoot moved = rewrite_pages(at_tip.pages(), edit, *writer, record);
-  writer->put({db::Kind::mesh_record, base.root().mesh, 1, {}, 0}, encode_record(record));
-  for (db::MeshRoot& root : info.roots)
-    if (root.mesh == moved.mesh) root = moved;
-  info.branch = options.branch;
-  info.expected_tip = tip;
-  info.parents = {tip};
-  info.author = options.author;
-  info.message = options.message;
-  info.attempt = attempt;
-  info.changed = {changed_charts(base.root().mesh, edit)};
-  report.parent = tip;
-  report.bytes_written = writer->bytes_put();
-  info.figures = figures_of(report, edit.charts.size());
-  report.revision = writer->publish(info);
 }
 
 /// How many values changed in each chart; those of shared vertices count in every chart of the region.
@@ -261,6 +239,40 @@ std::string attempt_name(std::string_view nonce, std::string_view branch, const 
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
+void publish_edit(const Snapshot::Impl& base, const EncodedEdit& edit, const CommitOptions& options,
+                  std::string_view operation, const std::string& attempt, CommitReport& report) {
+  const auto writer = base.store().writer();
+  const VersionId tip = writer->tip(options.branch);
+  db::CommitInfo info;
+  info.roots = base.store().roots(tip);
+  const db::MeshRoot* found = root_of(info.roots, base.root().mesh);
+  if (!found)
+    throw Error(Errc::conflict, fmt::format("mesh {} is not on branch {}", base.root().name, options.branch),
+                fmt::format("version {}", tip.value), "commit to the branch that you checked out from");
+  const Snapshot::Impl at_tip(base.store_handle(), tip, *found);
+  report.conflicts = find_conflicts(at_tip.pages(), edit);
+  if (!report.conflicts.empty()) return;
+
+  MeshRecord record = at_tip.record();
+  put_edit(edit, base.root().mesh, *writer, record);
+  if (edit.coding) put_coding(*edit.coding, base.root().mesh, *writer, record);
+  const db::MeshRoot moved = rewrite_pages(at_tip.pages(), edit, *writer, record);
+  writer->put({db::Kind::mesh_record, base.root().mesh, 1, {}, 0}, encode_record(record));
+  for (db::MeshRoot& root : info.roots)
+    if (root.mesh == moved.mesh) root = moved;
+  info.branch = options.branch;
+  info.expected_tip = tip;
+  info.parents = {tip};
+  info.author = options.author;
+  info.message = options.message;
+  info.attempt = attempt;
+  info.changed = {changed_charts(base.root().mesh, edit)};
+  report.parent = tip;
+  report.bytes_written = writer->bytes_put();
+  info.figures = figures_of(report, operation, edit.charts.size());
+  report.revision = writer->publish(info);
+}
+
 CommitReport commit_edit(std::span<const RegionPart> parts, const ChangeReport& change, const Edit& edit,
                          const CommitOptions& options, const std::string& attempt) {
   const auto start = std::chrono::steady_clock::now();
@@ -280,7 +292,7 @@ CommitReport commit_edit(std::span<const RegionPart> parts, const ChangeReport& 
   } else {
     const EncodedEdit encoded = encode_edit(parts, edit, options.threads);
     report = report_for(change, encoded);
-    publish(base, encoded, options, attempt, report);
+    publish_edit(base, encoded, options, "commit", attempt, report);
   }
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;

@@ -170,10 +170,23 @@ bool keeps_order(const Chart& before, const codec::EncodedChart& after) {
   return true;
 }
 
+/// How charts are coded anew.
+struct ChartCoder {
+  codec::Profile profile;
+  const codec::CoderTables& tables;
+  TableId table;
+  bool unmoved_too = false;  ///< code charts anew whose vertices stay where they are
+};
+
+ChartCoder coder_of(const Snapshot::Impl& at) {
+  return {at.record().profile, at.tables(at.record().table), at.record().table};
+}
+
 class ChartRecoder {
  public:
-  ChartRecoder(const Snapshot::Impl& at, const MoveTable& moves, std::span<const LayerEdit> layers)
-      : at_(at), moves_(moves), layers_(layers) {}
+  ChartRecoder(const Snapshot::Impl& at, const ChartCoder& coder, const MoveTable& moves,
+               std::span<const LayerEdit> layers)
+      : at_(at), coder_(coder), moves_(moves), layers_(layers) {}
 
   RecodedChart run(LoadedChart loaded, bool moved, bool values_changed) const {
     RecodedChart recoded;
@@ -189,17 +202,16 @@ class ChartRecoder {
   }
 
  private:
-  /// Empty when all vertices keep their lattice points.
+  /// Empty when all vertices keep their lattice points, unless such charts are coded, too.
   std::optional<codec::EncodedChart> recode_geometry(const LoadedChart& loaded, RecodedChart& recoded) const {
     Chart moved = loaded.chart;
     move_points(moved.positions, loaded.keys, moves_);
-    if (moved.positions == loaded.chart.positions) return std::nullopt;
-    const MeshRecord& record = at_.record();
-    std::optional encoded = codec::encode_chart(moved, record.profile, at_.tables(record.table), record.range);
+    if (!coder_.unmoved_too && moved.positions == loaded.chart.positions) return std::nullopt;
+    std::optional encoded = codec::encode_chart(moved, coder_.profile, coder_.tables, at_.record().range);
     recoded.blob = encoded->blob;
     recoded.cost = encoded->cost;
     recoded.expanded_range = encoded->expanded_range;
-    recoded.entry.table = record.table;
+    recoded.entry.table = coder_.table;
     recoded.entry.box = {};
     for (const LatticePoint p : moved.positions) recoded.entry.box.add(p);
     return encoded;
@@ -279,6 +291,7 @@ class ChartRecoder {
   }
 
   const Snapshot::Impl& at_;
+  ChartCoder coder_;
   const MoveTable& moves_;
   std::span<const LayerEdit> layers_;
 };
@@ -339,7 +352,7 @@ EncodedEdit encode_edit(std::span<const RegionPart> parts, const Edit& edit, uns
     ChartLoader loader(*at);
     std::vector<LoadedChart> loaded = loader.load(ids, threads, nullptr, values_changed);
     std::vector<RecodedChart> recoded(loaded.size());
-    const ChartRecoder recoder(*at, table, edit.layers);
+    const ChartRecoder recoder(*at, coder_of(*at), table, edit.layers);
     parallel_for(loaded.size(), threads, [&](std::size_t i) {
       recoded[i] = recoder.run(std::move(loaded[i]), moved.charts().contains(ids[i]), values_changed);
     });
@@ -350,6 +363,33 @@ EncodedEdit encode_edit(std::span<const RegionPart> parts, const Edit& edit, uns
         if (auto moved_wire = recode_wire(wire, table)) encoded.wires.emplace(id, *std::move(moved_wire));
   }
   encode_wires(encoded);
+  return encoded;
+}
+
+EncodedEdit encode_again(const Snapshot::Impl& at, codec::Profile profile, const codec::CoderTables& tables,
+                         unsigned threads, const std::function<void(double)>& progress) {
+  constexpr std::size_t kBatch = 256;  // charts in memory at a time
+  EncodedEdit encoded;
+  NewCoding& coding = encoded.coding.emplace();
+  coding.profile = profile;
+  if (!(tables == codec::CoderTables{})) {
+    coding.table = at.record().next_table;
+    coding.tables = codec::encode_tables(tables);
+  }
+  coding.table_bytes_before = at.table_bytes();
+
+  const std::vector<ChartId> ids = at.pages().all_charts();
+  const MoveTable no_moves;
+  const ChartRecoder recoder(at, {profile, tables, coding.table, true}, no_moves, {});
+  for (std::size_t first = 0; first < ids.size(); first += kBatch) {
+    progress(static_cast<double>(first) / static_cast<double>(ids.size()));
+    const auto batch = std::span(ids).subspan(first, std::min(kBatch, ids.size() - first));
+    std::vector<LoadedChart> loaded = ChartLoader(at).load(batch, threads, nullptr, true);
+    std::vector<RecodedChart> recoded(loaded.size());
+    parallel_for(loaded.size(), threads,
+                 [&](std::size_t i) { recoded[i] = recoder.run(std::move(loaded[i]), true, false); });
+    for (RecodedChart& chart : recoded) encoded.charts.emplace(chart.base.id, std::move(chart));
+  }
   return encoded;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -50,12 +51,21 @@ struct RecodedWire {
   std::uint64_t bytes_before = 0;  ///< its share of the blob that it was in, checksum included
 };
 
+/// Another way of coding all charts of a mesh.
+struct NewCoding {
+  codec::Profile profile = codec::Profile::dense;
+  TableId table;                         ///< 0: the built-in tables
+  Buffer tables;                         ///< the blob of that table
+  std::uint64_t table_bytes_before = 0;  ///< of the mesh's own table, checksum included; 0 without
+};
+
 /// An edit, coded and ready to be placed on any version that still holds what it was decided on.
 struct EncodedEdit {
   std::map<ChartId, RecodedChart> charts;
   std::map<WireId, RecodedWire> wires;
   std::map<WireId, Buffer> wire_groups;  ///< the blobs with their points, by first wire
   std::map<CornerId, LatticePoint> corners;
+  std::optional<NewCoding> coding;  ///< then `charts` are all that the mesh has
 };
 
 /// What an edit changes.
@@ -74,5 +84,11 @@ struct Edit {
 /// another order of its faces make them new.
 /// \param parts the region that the keys belong to; keys of one part's charts refer to its version.
 [[nodiscard]] EncodedEdit encode_edit(std::span<const RegionPart> parts, const Edit& edit, unsigned threads);
+
+/// Codes all charts of a mesh anew with other tables, in any profile; what charts hold stays as it is. Layers are coded
+/// anew where their order follows that of the chart's vertices or faces. `progress` gets the share that is done.
+[[nodiscard]] EncodedEdit encode_again(const Snapshot::Impl& at, codec::Profile profile,
+                                       const codec::CoderTables& tables, unsigned threads,
+                                       const std::function<void(double)>& progress);
 
 }  // namespace ramcdb::detail

@@ -77,11 +77,18 @@ LeafPage build_leaf(const EncodedMesh& mesh, std::size_t first, std::size_t last
 
 }  // namespace
 
-codec::CoderTables train_tables(const chartify::WireNet& net, codec::Profile profile, std::uint64_t vertices) {
+std::size_t training_step(std::uint64_t vertices) {
   constexpr std::uint64_t kMostVertices = 100'000;
+  return vertices / kMostVertices + 1;
+}
+
+codec::CoderTables train_tables(const chartify::WireNet& net, codec::Profile profile, std::uint64_t vertices) {
   std::vector<const Chart*> sample;
-  const std::uint64_t every = vertices / kMostVertices + 1;
-  for (std::size_t c = 0; c < net.charts.size(); c += every) sample.push_back(&net.charts[c].chart);
+  for (std::size_t c = 0; c < net.charts.size(); c += training_step(vertices)) sample.push_back(&net.charts[c].chart);
+  return train_tables(sample, profile, vertices);
+}
+
+codec::CoderTables train_tables(std::span<const Chart* const> sample, codec::Profile profile, std::uint64_t vertices) {
   if (profile == codec::Profile::dense) return codec::train_dense(sample, vertices);
   codec::CoderTables tables;
   codec::FastTrainer trainer(tables.fast);

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "api/layer_source.h"
@@ -24,7 +25,11 @@ struct EncodedMesh {
   codec::ChartCost cost;
 };
 
-/// Coder tables of a profile that suit a new mesh, from a sample of its charts.
+/// Of a mesh with so many vertices, every n-th chart is enough to train coder tables on.
+[[nodiscard]] std::size_t training_step(std::uint64_t vertices);
+/// Coder tables of a profile that suit a mesh of so many vertices, from a sample of its charts.
+[[nodiscard]] codec::CoderTables train_tables(std::span<const Chart* const> sample, codec::Profile profile,
+                                              std::uint64_t vertices);
 [[nodiscard]] codec::CoderTables train_tables(const chartify::WireNet& net, codec::Profile profile,
                                               std::uint64_t vertices);
 

@@ -126,6 +126,16 @@ void PageIndex::visit(const std::function<bool(const LatticeBox&)>& wanted,
   }
 }
 
+std::vector<ChartId> PageIndex::all_charts() const {
+  std::vector<ChartId> ids;
+  visit([](const LatticeBox&) { return true; },
+        [&](const LeafRef& ref) {
+          for (const PageChart& chart : ref.leaf->charts) ids.push_back(chart.id);
+        });
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
 LatticeBox PageIndex::box() const {
   return entry_for(*page(root_.root_page, root_.root_version).page, root_.root_page, root_.root_version).box;
 }

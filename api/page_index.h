@@ -46,6 +46,9 @@ class PageIndex {
   void visit(const std::function<bool(const LatticeBox&)>& wanted, const std::function<void(const LeafRef&)>& leaf,
              ReadCost* cost = nullptr) const;
 
+  /// The ids of all charts, ascending.
+  [[nodiscard]] std::vector<ChartId> all_charts() const;
+
   /// The exact box of the whole mesh.
   [[nodiscard]] LatticeBox box() const;
 

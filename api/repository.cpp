@@ -7,6 +7,7 @@
 #include "api/checkout.h"
 #include "api/diff.h"
 #include "api/import.h"
+#include "api/repack.h"
 #include "api/repository_impl.h"
 #include "api/sidecar.h"
 #include "api/snapshot_impl.h"
@@ -174,6 +175,17 @@ ChangeReport Repository::status_file(const std::filesystem::path& file) const {
 
 CommitReport Repository::commit_file(const std::filesystem::path& file, const CommitOptions& options) {
   return detail::commit_file(impl_->store_for_writing(), file, options);
+}
+
+RepackReport Repository::repack(std::string_view mesh, const RepackOptions& options) {
+  (void)impl_->store_for_writing();
+  const Snapshot before = snapshot(mesh, options.branch);
+  RepackReport report = detail::repack_mesh(before.impl(), options);
+  report.before = before.info().bytes;
+  const MeshInfo after = snapshot(before.info().mesh, options.branch).info();
+  report.after = after.bytes;
+  report.profile = after.profile;
+  return report;
 }
 
 DiffReport Repository::diff(const Snapshot& from, const Snapshot& to, unsigned threads) const {

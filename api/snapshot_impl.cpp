@@ -23,9 +23,12 @@ Snapshot::Impl::Impl(std::shared_ptr<db::Store> store, VersionId version, const 
   if (record_.layers)
     layers_ = detail::decode_layer_table(store_->reader()->get({db::Kind::attribute, root.mesh, 0, record_.layers, 0}),
                                          fmt::format("mesh {}, version {}", root.name, record_.layers.value));
-  if (record_.table)
-    own_tables_ = codec::decode_tables(
-        store_->reader()->get({db::Kind::table, root.mesh, record_.table.value, record_.table_version, 0}));
+  if (record_.table) {
+    const Buffer tables =
+        store_->reader()->get({db::Kind::table, root.mesh, record_.table.value, record_.table_version, 0});
+    own_tables_ = codec::decode_tables(tables);
+    table_bytes_ = tables.size() + detail::kBlobOverhead;
+  }
 }
 
 const codec::CoderTables& Snapshot::Impl::tables(TableId table) const {

@@ -27,12 +27,14 @@ class Snapshot::Impl {
   [[nodiscard]] const detail::LayerTable& layers() const { return layers_; }
   /// The tables that a chart names. Throws unsupported_version for others than the mesh's own and the built-in ones.
   [[nodiscard]] const codec::CoderTables& tables(TableId table) const;
+  /// Bytes of the blob of the mesh's own tables, checksum included; 0 without.
+  [[nodiscard]] std::uint64_t table_bytes() const { return table_bytes_; }
 
  private:
   std::shared_ptr<db::Store> store_;
   VersionId version_;
   std::unique_ptr<db::Pin> pin_;
-  std::uint64_t record_bytes_ = 0;
+  std::uint64_t record_bytes_ = 0, table_bytes_ = 0;
   detail::MeshRecord record_;
   detail::LayerTable layers_;
   detail::PageIndex pages_;

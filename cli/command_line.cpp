@@ -32,6 +32,7 @@ void add_verbs(CLI::App& app, Run& run) {
   setup_log(app, run);
   setup_show(app, run);
   setup_export(app, run);
+  setup_repack(app, run);
   setup_verify(app, run);
 }
 

@@ -242,6 +242,20 @@ std::string commit_json(const CommitReport& report) {
                   {"conflicts", of(report.conflicts)}});
 }
 
+std::string repack_json(const RepackReport& report) {
+  const auto same = [](std::uint64_t bytes) { return bytes; };
+  return printed({{"revision", report.revision.value},
+                  {"parent", report.parent.value},
+                  {"nothing_changed", report.nothing_changed},
+                  {"profile", report.profile},
+                  {"charts", report.charts},
+                  {"bytes_before", by_kind(report.before, same)},
+                  {"bytes", by_kind(report.after, same)},
+                  {"bytes_written", report.bytes_written},
+                  {"seconds", report.seconds},
+                  {"conflicts", of(report.conflicts)}});
+}
+
 std::string log_json(const std::vector<VersionRecord>& versions) {
   Json json = {{"revisions", Json::array()}};
   for (const VersionRecord& version : versions) json["revisions"].push_back(of(version));

@@ -26,6 +26,7 @@ void setup_commit(CLI::App& app, Run& run);
 void setup_log(CLI::App& app, Run& run);
 void setup_show(CLI::App& app, Run& run);
 void setup_export(CLI::App& app, Run& run);
+void setup_repack(CLI::App& app, Run& run);
 void setup_verify(CLI::App& app, Run& run);
 
 }  // namespace ramcdb::cli

@@ -4,110 +4,13 @@
 #include "api/mesh_file/mesh_file.h"
 #include "db/store.h"
 #include "ramcdb/edit_transaction.h"
-#include "tests/api/blobs_of.h"
-#include "tests/api/face_records.h"
-#include "tests/api/temp_repository.h"
+#include "tests/api/painted_grid.h"
 
 /// Attributes and polygons on their way in, through edits, and out.
 namespace ramcdb::test {
 namespace {
 
-namespace fs = std::filesystem;
 using mesh_file::MeshData;
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-Attribute make(std::string name, AttributeOf of, NumberType type, std::uint8_t components, Meaning meaning) {
-  return {{std::move(name), of, type, components, meaning, {}, {}}, {}};
-}
-
-/// A grid of quads, some of them cut to triangles and some joined to octagons, with attributes of every kind: colours,
-/// normals, a texture with a seam and corners without one, materials, an odd number per vertex and one per face.
-MeshData painted_grid(std::uint32_t n) {
-  MeshData mesh;
-  Attribute color = make("color", AttributeOf::vertex, NumberType::uint8, 3, Meaning::color);
-  Attribute normal = make("normal", AttributeOf::vertex, NumberType::float32, 3, Meaning::normal);
-  Attribute heat = make("heat", AttributeOf::vertex, NumberType::float32, 1, Meaning::other);
-  Attribute texture = make("texture", AttributeOf::corner, NumberType::float32, 2, Meaning::texture);
-  Attribute flags = make("flags", AttributeOf::face, NumberType::int16, 1, Meaning::other);
-  for (std::uint32_t y = 0; y <= n; ++y)
-    for (std::uint32_t x = 0; x <= n; ++x) {
-      const double height = std::sin(x * 0.3) * std::cos(y * 0.2);
-      mesh.positions.push_back({static_cast<double>(x), static_cast<double>(y), height});
-      color.values.insert(color.values.end(), {static_cast<double>(x % 256), static_cast<double>(y % 256), 7.0});
-      normal.values.insert(normal.values.end(), {0.0, double{0.6F}, double{0.8F}});
-      heat.values.push_back(static_cast<double>(static_cast<float>(height * 1e-3)));
-    }
-  const auto at = [n](std::uint32_t x, std::uint32_t y) { return y * (n + 1) + x; };
-  const auto add = [&](std::initializer_list<std::uint32_t> face, std::uint32_t x) {
-    mesh.face_sizes.push_back(static_cast<std::uint32_t>(face.size()));
-    flags.values.push_back(static_cast<double>(x) - 5);
-    for (const std::uint32_t v : face) {
-      mesh.corners.push_back(v);
-      const double seam = x >= n / 2 ? 0.25 : 0;
-      const bool none = x == 1;
-      texture.values.push_back(none ? kNone : (v % (n + 1)) / 64.0 + seam);
-      texture.values.push_back(none ? kNone : (v / (n + 1)) / 64.0);
-    }
-  };
-  for (std::uint32_t y = 0; y < n; ++y)
-    for (std::uint32_t x = 0; x < n; ++x) {
-      if (x % 7 == 3) {
-        add({at(x, y), at(x + 1, y), at(x + 1, y + 1)}, x);
-        add({at(x, y), at(x + 1, y + 1), at(x, y + 1)}, x);
-      } else if (x % 7 == 5 && y % 2 == 0 && y + 1 < n) {
-        add({at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x + 1, y + 2), at(x, y + 2), at(x, y + 1)}, x);
-      } else if (x % 7 != 5 || y % 2 == 0) {
-        add({at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)}, x);
-      }
-    }
-  mesh.attributes = {color, normal, heat, texture, flags};
-  return mesh;
-}
-
-void write(const MeshData& mesh, const fs::path& file) {
-  (void)mesh_file::write_mesh(file, mesh_file::format_of(file),
-                              {mesh.positions,
-                               mesh.corners,
-                               mesh.face_sizes,
-                               mesh_file::Scalar::float64,
-                               {},
-                               {},
-                               mesh.attributes,
-                               mesh.references,
-                               {}});
-}
-
-/// A fresh repository with the painted grid.
-class Painted {
- public:
-  explicit Painted(const MeshData& mesh, bool lossless = false) {
-    Repository::create(folder_ / "r.ramcdb");
-    repository_.emplace(Repository::open(folder_ / "r.ramcdb"));
-    write(mesh, folder_ / "input.ply");
-    ImportOptions options;
-    options.name = "mesh";
-    options.bits = 16;
-    options.chart_faces = 300;
-    options.lossless_attributes = lossless;
-    report_ = repository_->import(folder_ / "input.ply", options);
-  }
-  [[nodiscard]] Repository* operator->() { return &*repository_; }
-  [[nodiscard]] fs::path operator/(const std::string& name) const { return folder_ / name; }
-  [[nodiscard]] const ImportReport& report() const { return report_; }
-  [[nodiscard]] std::size_t written(VersionId version, db::Kind kind) const {
-    return count_blobs(*repository_, version, kind, report_.info.charts);
-  }
-
- private:
-  TempFolder folder_;
-  std::optional<Repository> repository_;
-  ImportReport report_;
-};
-
-auto records(const Snapshot& snapshot, const MeshData& mesh) {
-  return face_records(mesh, snapshot.lattice(), snapshot.info().attributes);
-}
 
 TEST(Attributes, ComeBackWithTheirPolygonsFromEveryVersion) {
   const MeshData mesh = painted_grid(60);
@@ -171,13 +74,13 @@ TEST(Attributes, AnUneditedFileIsNoEditInAnyFormat) {
 TEST(Attributes, AnEditOfColoursWritesColoursOnly) {
   Painted repository(painted_grid(40));
   const Snapshot before = repository->snapshot();
-  const fs::path file = repository / "a.ply";
+  const std::filesystem::path file = repository / "a.ply";
   (void)repository->checkout_file(before, before.find({{NearestTo{{20, 20, 0}}}, 0}), file, {});
   MeshData mesh = mesh_file::read_mesh(file);
   for (Attribute& attribute : mesh.attributes)
     if (attribute.info.name == "color")
       for (double& level : attribute.values) level = 255 - level;
-  write(mesh, file);
+  write_data(mesh, file);
   const CommitReport report = repository->commit_file(file, message("negative"));
   EXPECT_EQ(report.vertices_moved, 0U);
   EXPECT_EQ(report.values_changed, mesh.positions.size());
@@ -210,12 +113,12 @@ TEST(Attributes, AnEditOfColoursWritesColoursOnly) {
 TEST(Attributes, AnEditOfGeometryWritesGeometryOnly) {
   Painted repository(painted_grid(40));
   const Snapshot before = repository->snapshot();
-  const fs::path file = repository / "a.ply";
+  const std::filesystem::path file = repository / "a.ply";
   const std::vector<ChartId> charts = before.find({{NearestTo{{20, 20, 0}}}, 0});
   (void)repository->checkout_file(before, charts, file, {});
   MeshData mesh = mesh_file::read_mesh(file);
   for (Point& p : mesh.positions) p.z += p.x * p.y * 0.01;
-  write(mesh, file);
+  write_data(mesh, file);
   const CommitReport report = repository->commit_file(file, message("bent"));
   EXPECT_EQ(report.values_changed, 0U);
   EXPECT_GT(report.charts_reencoded, 0U);
@@ -298,16 +201,16 @@ TEST(Attributes, OfPiecesWithoutBorderFollowTheirVerticesWhereverTheyMove) {
   MeshData mesh;
   mesh.positions = boxes_mesh.positions;
   for (const Triangle& t : boxes_mesh.faces) mesh.corners.insert(mesh.corners.end(), t.begin(), t.end());
-  Attribute number = make("number", AttributeOf::vertex, NumberType::int32, 1, Meaning::other);
+  Attribute number = make_attribute("number", AttributeOf::vertex, NumberType::int32, 1, Meaning::other);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) number.values.push_back(static_cast<double>(v));
   mesh.attributes = {number};
   Painted repository(mesh);
-  const fs::path file = repository / "a.ply";
+  const std::filesystem::path file = repository / "a.ply";
   const Snapshot before = repository->snapshot();
   (void)repository->checkout_file(before, before.find({{WholeMesh{}}, 0}), file, {});
   MeshData moved = mesh_file::read_mesh(file);
   for (Point& p : moved.positions) std::swap(p.x, p.y), p.z = -p.z * 0.5;
-  write(moved, file);
+  write_data(moved, file);
   const CommitReport report = repository->commit_file(file, message("turned"));
   EXPECT_EQ(report.values_changed, 0U);
   const Snapshot after = repository->snapshot();
@@ -321,7 +224,7 @@ TEST(Attributes, APolygonFileMayComeBackRenumberedOrCut) {
   const Snapshot before = repository->snapshot();
   const auto charts = before.find({{WholeMesh{}}, 0});
   for (const bool cut : {false, true}) {
-    const fs::path file = repository / (cut ? "cut.obj" : "turned.obj");
+    const std::filesystem::path file = repository / (cut ? "cut.obj" : "turned.obj");
     (void)repository->checkout_file(before, charts, file, {});
     MeshData mesh = mesh_file::read_mesh(file), other;
     other.positions.assign(mesh.positions.rbegin(), mesh.positions.rend());
@@ -341,7 +244,7 @@ TEST(Attributes, APolygonFileMayComeBackRenumberedOrCut) {
     }
     for (Point& p : other.positions)
       if (p.x > 10 && p.x < 12) p.z += 0.5;
-    write(other, file);
+    write_data(other, file);
     const ChangeReport change = repository->status_file(file);
     EXPECT_EQ(change.vertices_moved, 25U) << cut;
     EXPECT_EQ(change.values_changed, 0U) << cut;

@@ -146,6 +146,19 @@ struct CommitReport {
   std::vector<ChartId> conflicts;  ///< not empty: refused, nothing was written
 };
 
+/// A mesh coded anew.
+struct RepackReport {
+  VersionId revision;  ///< the new version; the tip when nothing changed
+  VersionId parent;
+  bool nothing_changed = false;  ///< it is in that profile already, and would not get smaller
+  std::string profile;           ///< that it has now: "dense", "fast"
+  std::uint64_t charts = 0;
+  MeshBytes before, after;
+  std::uint64_t bytes_written = 0;
+  double seconds = 0;
+  std::vector<ChartId> conflicts;  ///< not empty: others committed meanwhile, nothing was written
+};
+
 struct VerifyReport {
   std::uint64_t objects = 0;  ///< blobs looked at
   std::uint64_t decoded_charts = 0;

@@ -70,6 +70,15 @@ struct CommitOptions {
   Progress progress;
 };
 
+struct RepackOptions {
+  std::optional<ChartProfile> profile;  ///< the mesh's own, with tables trained anew, when not said
+  std::string message;                  ///< "repack as PROFILE" when empty
+  std::string author;
+  std::string branch = "main";
+  unsigned threads = 1;
+  Progress progress;
+};
+
 /// A repository of meshes with their history: a folder. Cheap to copy; copies are the same repository. Thread-safe.
 class Repository {
  public:
@@ -114,6 +123,12 @@ class Repository {
   [[nodiscard]] EditTransaction begin_edit(std::string_view mesh = {}, std::string_view branch = "main");
 
   [[nodiscard]] DiffReport diff(const Snapshot& from, const Snapshot& to, unsigned threads = 1) const;
+
+  /// Codes all charts of a mesh of a branch anew, as a new version that holds the very same mesh: in another profile,
+  /// or with tables that suit it better after many edits. In the profile that the mesh has, a version is written only
+  /// if it gets smaller. Conflicts come back in the report. Files checked out before count as of an older state: they
+  /// commit only where no chart of theirs was coded anew, so check out again.
+  RepackReport repack(std::string_view mesh, const RepackOptions& options);
 
   struct VerifyOptions {
     bool quick = false;  ///< checksums and references only, no decoding
