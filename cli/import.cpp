@@ -9,6 +9,7 @@
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/progress_bar.h"
+#include "cli/size_table.h"
 #include "cli/text.h"
 #include "cli/verbs.h"
 #include "ramcdb/repository.h"
@@ -64,17 +65,6 @@ std::string error_text(const ImportReport& report) {
          model_units(report.measured_error) + " (lattice step " + model_units(report.info.lattice.step) + ")\n";
 }
 
-std::string size_text(const MeshInfo& info) {
-  const MeshBytes& bytes = info.bytes;
-  const auto bits = [&](std::uint64_t n) { return fixed(bits_per_vertex(n, info.vertices), 3); };
-  std::string text = "size     " + grouped(bytes.payload) + " bytes, " + bits(bytes.payload) +
-                     " bits/vertex: connectivity " + bits(bytes.connectivity) + ", geometry " + bits(bytes.geometry) +
-                     ", wires " + bits(bytes.wires) + ",\n         wire net " + bits(bytes.wire_net) +
-                     ", chart headers " + bits(bytes.chart_headers) + ", tables " + bits(bytes.tables);
-  if (bytes.attributes > 0) text += ", attributes " + bits(bytes.attributes);
-  return text + "\n";
-}
-
 std::string time_text(const ImportReport& report) {
   std::string text = "time     " + duration(report.seconds);
   if (report.seconds > 0)
@@ -88,7 +78,7 @@ std::string report_text(const ImportReport& report) {
   return one_line(info.mesh) + ": " + counted(info.vertices, "vertex", "vertices") + ", " +
          counted(info.faces, "face") + " in " + counted(info.charts, "chart") + ", " +
          (info.revision ? "now version " + version_text(info.revision) : std::string("nothing was written")) + "\n" +
-         found_text(info) + changed_text(report) + error_text(report) + size_text(info) + time_text(report);
+         found_text(info) + changed_text(report) + error_text(report) + time_text(report) + "\n" + size_table(info);
 }
 
 double size_of(const std::filesystem::path& file) {

@@ -6,6 +6,7 @@
 #include "cli/json_out.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "cli/size_table.h"
 #include "cli/table.h"
 #include "cli/text.h"
 #include "cli/verbs.h"
@@ -58,29 +59,11 @@ std::string attributes_text(const MeshInfo& info) {
   return text;
 }
 
-std::string table_of_sizes(const MeshInfo& info) {
-  Table table({{"kind", Table::Align::left}, {"bytes"}, {"bits/vertex"}});
-  const auto row = [&](const char* kind, std::uint64_t bytes) {
-    table.add({kind, grouped(bytes), fixed(bits_per_vertex(bytes, info.vertices), 3)});
-  };
-  row("wire net", info.bytes.wire_net);
-  row("wires", info.bytes.wires);
-  row("connectivity", info.bytes.connectivity);
-  row("geometry", info.bytes.geometry);
-  row("chart headers", info.bytes.chart_headers);
-  row("attributes", info.bytes.attributes);
-  row("tables", info.bytes.tables);
-  row("payload (all of the above)", info.bytes.payload);
-  row("store (whole repository on disk)", info.bytes.store);
-  return table.text();
-}
-
 int run_info(const InfoOptions& options) {
   const Repository repository = Repository::open(options.folder);
   const MeshInfo info = repository.snapshot(options.which.mesh, options.which.at).info();
-  say(options.mode.json
-          ? info_json(info)
-          : shape_text(info) + "\n" + place_text(info) + attributes_text(info) + "\n" + table_of_sizes(info));
+  say(options.mode.json ? info_json(info)
+                        : shape_text(info) + "\n" + place_text(info) + attributes_text(info) + "\n" + size_table(info));
   return kDone;
 }
 
