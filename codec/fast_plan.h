@@ -15,11 +15,10 @@ struct FastPlace {
   /// before, next, behind the edge before-pivot, behind pivot-next, the vertex before `before`, behind that edge.
   /// Behind an edge of the border there is nothing; the vertex that it starts from stands for that.
   std::array<std::uint32_t, 6> around{};
-  std::uint16_t predictor = 0;  ///< class of weights, below kFastPredictors
-  std::uint16_t trust = 0;      ///< how many parallelograms there are, 0 to 3; kFastFree: no neighbours at all
+  std::uint32_t predictor = 0;  ///< class of weights, below kFastPredictors; kFreePlace: there are no neighbours
 };
 
-inline constexpr std::uint16_t kFastFree = 4;
+inline constexpr std::uint32_t kFreePlace = ~std::uint32_t{0};
 
 /// No chart splits more corners.
 inline constexpr std::uint32_t kMaxFastJoins = 1u << 20;

@@ -1,6 +1,8 @@
 #include "codec/fast_predictor.h"
 
 #include <bit>
+#include <limits>
+#include <utility>
 
 namespace ramcdb::codec {
 
@@ -28,20 +30,10 @@ Unsigned4 wide_guess(const FastPlace& place, const FastPosition* positions, cons
   return guess;
 }
 
-/// Calls with_guess(i, guess) for all places in order.
-template <class WithGuess>
-RAMCDB_INLINE void for_all(const FastPlan& plan, const FastPosition* positions, std::uint32_t border,
-                           LatticePoint origin, const FastWeights& weights, bool wide, const WithGuess& with_guess) {
-  std::size_t first = 0;
-  if (border == 0 && !plan.places.empty()) with_guess(first++, fast_position(origin));
-  const std::size_t count = plan.places.size();
-  const FastPlace* places = plan.places.data();
-  if (wide)
-    for (std::size_t i = first; i < count; ++i)
-      with_guess(i, wide_guess(places[i], positions, weights[places[i].predictor]));
-  else
-    for (std::size_t i = first; i < count; ++i)
-      with_guess(i, narrow_guess(places[i], positions, weights[places[i].predictor]));
+RAMCDB_INLINE FastPosition guess(const FastPlace& place, const FastPosition* positions, const FastWeights& weights,
+                                 bool wide) {
+  const PlaceWeights& w = weights[place.predictor];
+  return wide ? wide_guess(place, positions, w) : narrow_guess(place, positions, w);
 }
 
 }  // namespace
@@ -55,21 +47,40 @@ bool needs_wide_sums(const LatticeBox& box, std::span<const LatticePoint> border
   return false;
 }
 
-std::vector<FastResidual> misses(const FastPlan& plan, std::uint32_t border, const std::vector<FastPosition>& positions,
-                                 LatticePoint origin, const FastWeights& weights, bool wide) {
+std::vector<FastResidual> misses(const FastPlan& plan, std::uint32_t border, std::span<const FastPosition> positions,
+                                 const FastWeights& weights, bool wide) {
   std::vector<FastResidual> residuals(plan.places.size());
-  for_all(plan, positions.data(), border, origin, weights, wide, [&](std::size_t i, FastPosition guess) {
-    residuals[i] = std::bit_cast<Int4>(positions[border + i] - guess);
-  });
+  for (std::size_t i = 0; i < residuals.size(); ++i)
+    if (plan.places[i].predictor != kFreePlace)
+      residuals[i] =
+          std::bit_cast<Int4>(positions[border + i] - guess(plan.places[i], positions.data(), weights, wide));
   return residuals;
 }
 
 RAMCDB_FAST_CLONES
-void place_all(const FastPlan& plan, std::uint32_t border, const std::vector<FastResidual>& residuals,
-               LatticePoint origin, const FastWeights& weights, bool wide, std::vector<FastPosition>& positions) {
+LatticeBox place_all(const FastPlan& plan, std::uint32_t border, ResidualReader& residuals,
+                     std::span<const LatticePoint> free, const FastWeights& weights, bool wide,
+                     std::vector<FastPosition>& positions) {
+  ResidualReader reader = std::move(residuals);  // so that its states may live in registers
   FastPosition* const all = positions.data();
-  for_all(plan, all, border, origin, weights, wide,
-          [&](std::size_t i, FastPosition guess) { all[border + i] = guess + std::bit_cast<Unsigned4>(residuals[i]); });
+  const LatticePoint* next_free = free.data();
+  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+  Int4 low = Int4{} + kMost, high = -low;
+  const std::size_t count = plan.places.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const FastPlace& place = plan.places[i];
+    if (place.predictor == kFreePlace) [[unlikely]] {
+      all[border + i] = fast_position(*next_free++);
+    } else {
+      const FastResidual miss = reader.take(place, border + i);
+      all[border + i] = guess(place, all, weights, wide) + std::bit_cast<Unsigned4>(miss);
+    }
+    const Int4 p = std::bit_cast<Int4>(all[border + i]);
+    low = p < low ? p : low;
+    high = p > high ? p : high;
+  }
+  residuals = std::move(reader);
+  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
 }
 
 }  // namespace ramcdb::codec

@@ -27,13 +27,15 @@ using FastPosition = Unsigned4;
 /// Whether positions within `box` and `border` may be too far apart for sums of 32 bits.
 [[nodiscard]] bool needs_wide_sums(const LatticeBox& box, std::span<const LatticePoint> border);
 
-/// How far the guesses for all places miss `positions`. `origin`: what a vertex without any before it is guessed at.
+/// How far the guesses for all places miss `positions`; 0 for free places.
 [[nodiscard]] std::vector<FastResidual> misses(const FastPlan& plan, std::uint32_t border,
-                                               const std::vector<FastPosition>& positions, LatticePoint origin,
-                                               const FastWeights& weights, bool wide);
+                                               std::span<const FastPosition> positions, const FastWeights& weights,
+                                               bool wide);
 
-/// The other way round: completes `positions`, of which the border is known.
-void place_all(const FastPlan& plan, std::uint32_t border, const std::vector<FastResidual>& residuals,
-               LatticePoint origin, const FastWeights& weights, bool wide, std::vector<FastPosition>& positions);
+/// The other way round: completes `positions`, of which the border is known. `free`: one point for each free place.
+/// Returns the box of what was completed.
+LatticeBox place_all(const FastPlan& plan, std::uint32_t border, ResidualReader& residuals,
+                     std::span<const LatticePoint> free, const FastWeights& weights, bool wide,
+                     std::vector<FastPosition>& positions);
 
 }  // namespace ramcdb::codec

@@ -102,6 +102,17 @@ class WordReader {
   std::size_t at_ = 0;
 };
 
+/// States that take turns, so that a processor works at all of them at once; so many symbols are worth their bytes.
+inline constexpr std::size_t kRansLanes = 4;
+[[nodiscard]] inline std::size_t rans_lanes(std::size_t symbols) { return symbols < 512 ? 1 : kRansLanes; }
+
+inline void put_words(Buffer& out, std::span<const std::uint16_t> last_first) {
+  for (std::size_t i = last_first.size(); i-- > 0;) {
+    out.push_back(static_cast<std::uint8_t>(last_first[i]));
+    out.push_back(static_cast<std::uint8_t>(last_first[i] >> 8));
+  }
+}
+
 class RansDecoder {
  public:
   RansDecoder() = default;
@@ -133,5 +144,10 @@ class RansDecoder {
 
   std::uint32_t state_ = kRansLow;
 };
+
+/// Symbols of one distribution, the first with the first state. REQUIRES: states.size() is 1 or kRansLanes.
+void push_run(std::span<RansEncoder> states, const RansTable& table, std::span<const std::uint8_t> symbols,
+              std::vector<std::uint16_t>& words);
+void pop_run(std::span<RansDecoder> states, const RansTable& table, WordReader& words, std::span<std::uint8_t> symbols);
 
 }  // namespace ramcdb::codec

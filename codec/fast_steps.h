@@ -11,21 +11,20 @@
 #include "codec/fast_rans.h"
 #include "codec/fast_tables.h"
 #include "codec/range_coder.h"
+#include "codec/varint.h"
 
 /// What FastWalk asks for, from a stream (FastStepReader) or from a chart (FastStepWriter).
 ///
-/// Degrees are symbols of a static range coder; what does not fit into one, and where joins go, is coded on the side,
-/// adaptively.
+/// Degrees are symbols that a static range coder has given in one go before the walk. What does not fit into one, where
+/// joins go, and where vertices without neighbours lie, is coded on the side, adaptively.
+///
+///   degrees = state:4{1 or kRansLanes} word*
 namespace ramcdb::codec {
 
-/// The contexts that symbols are coded in. Steps: by how many faces the two corners at hand still take.
-inline std::uint32_t step_context(const FastNode& before, const FastNode& pivot) {
-  return (std::min(pivot.open, 5u) - 2) * 4 + std::min(before.open, 5u) - 2;
-}
-
-/// Numbers that are rare: large degrees, and joins.
+/// Numbers that are rare: large degrees, joins, and vertices without neighbours.
 ///
 ///   large = degree - kLargeDegree (step, seed) or - kLargeDegree + 1 (border)
+///   free  = x y z                          to the free vertex before, or the low corner of the box; modulo 2^32
 ///   join  = near:bit [backwards:bit] (distance | number) open_here - 1
 ///
 /// distance: how many corners that could be joined lie between, from the pivot's next one forwards or from the one
@@ -36,6 +35,8 @@ class FastSide {
   explicit FastSide(Coder& coder) : coder_(coder) {}
 
   std::uint32_t code_large(std::uint32_t above) { return large_.code(coder_, above); }
+
+  LatticePoint code_free(LatticePoint before, LatticePoint point);
 
   struct Join {
     std::uint32_t there = 0;
@@ -63,7 +64,19 @@ class FastSide {
   AdaptiveUnsigned number_;
   AdaptiveUnsigned open_here_;
   AdaptiveUnsigned large_;
+  std::array<AdaptiveSigned, 3> free_;
 };
+
+template <class Coder>
+LatticePoint FastSide<Coder>::code_free(LatticePoint before, LatticePoint point) {
+  for (int a = 0; a < 3; ++a) {
+    const auto from = static_cast<std::uint32_t>(before[a]);
+    const std::uint32_t way = static_cast<std::uint32_t>(point[a]) - from;
+    const std::int32_t coded = free_[static_cast<std::size_t>(a)].code(coder_, static_cast<std::int32_t>(way));
+    point[a] = static_cast<std::int32_t>(from + static_cast<std::uint32_t>(coded));
+  }
+  return point;
+}
 
 template <class Coder>
 template <class Step>
@@ -111,16 +124,22 @@ typename FastSide<Coder>::Join FastSide<Coder>::code_join(const std::vector<Fast
   return join;
 }
 
+/// Takes the symbols of `border` vertices and of `inner` other ones and joins. One more stands behind them for streams
+/// that ask for too many: a join, which there are not so many of.
+[[nodiscard]] std::vector<std::uint8_t> take_degrees(ByteReader& reader, std::uint32_t border, std::uint32_t inner,
+                                                     const FastStepTables& tables);
+
 /// Reads the connectivity of a chart.
 class FastStepReader {
  public:
-  FastStepReader(Bytes side, RansDecoder state, WordReader words, const FastStepTables& tables)
-      : coder_(side), side_(coder_), state_(state), words_(words), tables_(tables) {}
+  /// \param symbols what take_degrees() gave; must outlive the reader
+  FastStepReader(Bytes side, const std::vector<std::uint8_t>& symbols, LatticePoint origin)
+      : coder_(side), side_(coder_), symbol_(symbols.data()), last_free_(origin) {}
 
-  std::uint32_t border_degree(std::uint32_t /*vertex*/) { return degree(kBorderContext) - 1; }
-  std::uint32_t seed_degree(std::uint32_t /*vertex*/) { return degree(kSeedContext); }
-  std::uint32_t step_degree(const std::vector<FastNode>& nodes, std::uint32_t before, std::uint32_t pivot) {
-    const std::uint32_t symbol = pop(step_context(nodes[before], nodes[pivot]));
+  std::uint32_t border_degree(std::uint32_t /*vertex*/) { return degree() - 1; }
+  std::uint32_t seed_degree(std::uint32_t /*vertex*/) { return degree(); }
+  std::uint32_t step_degree(std::uint32_t /*before*/) {
+    const std::uint32_t symbol = *symbol_++;
     return symbol == kLargeSymbol ? large() : symbol;
   }
   FastSide<RangeDecoder>::Join join_target(const std::vector<FastNode>& nodes, std::uint32_t used, std::uint32_t before,
@@ -130,42 +149,44 @@ class FastStepReader {
   void closed(std::uint32_t /*before*/) {}
   void vertex_placed(std::uint32_t /*before*/, std::uint32_t /*node*/, std::uint32_t /*vertex*/) {}
   void joined(std::uint32_t /*before*/, std::uint32_t /*here*/) {}
-  void seed_placed(std::uint32_t /*first_vertex*/, std::uint32_t /*first_node*/) {}
-  void isolated_placed(std::uint32_t /*vertex*/) {}
+  void seed_placed(std::uint32_t /*first_vertex*/, std::uint32_t /*first_node*/) {
+    for (int i = 0; i < 3; ++i) take_free();
+  }
+  void isolated_placed(std::uint32_t /*vertex*/) { take_free(); }
 
-  /// How many bytes of words were taken. Throws corrupt unless all ended as a writer ends it.
-  [[nodiscard]] std::size_t finish() const;
+  /// Where vertices without neighbours lie, in their order.
+  [[nodiscard]] const std::vector<LatticePoint>& free_points() const { return free_points_; }
+  /// What they took, in 1/256 bit.
+  [[nodiscard]] std::uint64_t free_cost() const { return free_cost_; }
+  /// Throws corrupt unless the side ended as a writer ends it.
+  void finish() const { coder_.finish(); }
 
  private:
-  std::uint32_t pop(std::uint32_t context) {
-    const RansTable& table = tables_.table(context);
-    return words_.has(1) ? state_.pop_sure(table, words_) : state_.pop(table, words_);
-  }
-  std::uint32_t degree(std::uint32_t context) {
-    const std::uint32_t symbol = pop(context);
+  std::uint32_t degree() {
+    const std::uint32_t symbol = *symbol_++;
     if (symbol > kLargeSymbol) return symbol;
     if (symbol == kJoinSymbol) throw Error(Errc::corrupt, "a chart joins where it cannot");
     return large();
   }
   std::uint32_t large();
+  void take_free();
 
   RangeDecoder coder_;
   FastSide<RangeDecoder> side_;
-  RansDecoder state_;
-  WordReader words_;
-  const FastStepTables& tables_;
+  const std::uint8_t* symbol_;
+  LatticePoint last_free_;
+  std::vector<LatticePoint> free_points_;
+  std::uint64_t free_cost_ = 0;
 };
 
 /// Writes the connectivity of a chart, and remembers which vertex and face of it became which.
 class FastStepWriter {
  public:
-  FastStepWriter(const Chart& chart, const HalfEdges& edges);
+  FastStepWriter(const Chart& chart, const HalfEdges& edges, LatticePoint origin);
 
-  std::uint32_t border_degree(std::uint32_t vertex) { return put_degree(kBorderContext, degrees_[vertex], 1); }
-  std::uint32_t seed_degree(std::uint32_t vertex) {
-    return put_degree(kSeedContext, degrees_[guide_.source_vertices()[vertex]], 0);
-  }
-  std::uint32_t step_degree(const std::vector<FastNode>& nodes, std::uint32_t before, std::uint32_t pivot);
+  std::uint32_t border_degree(std::uint32_t vertex) { return put_degree(degrees_[vertex], 1); }
+  std::uint32_t seed_degree(std::uint32_t vertex) { return put_degree(degrees_[guide_.source_vertices()[vertex]], 0); }
+  std::uint32_t step_degree(std::uint32_t before);
   FastSide<RangeEncoder>::Join join_target(const std::vector<FastNode>& nodes, std::uint32_t used, std::uint32_t before,
                                            std::uint32_t pivot);
   void closed(std::uint32_t before) {
@@ -177,33 +198,34 @@ class FastStepWriter {
     guide_.face_opened(before, node);
   }
   void joined(std::uint32_t before, std::uint32_t here) { guide_.face_opened(before, here); }
-  void seed_placed(std::uint32_t first_vertex, std::uint32_t first_node) {
-    (void)guide_.next_seed();
-    guide_.seed_placed(first_vertex, first_node);
-  }
-  void isolated_placed(std::uint32_t vertex) { (void)guide_.next_isolated(vertex); }
+  void seed_placed(std::uint32_t first_vertex, std::uint32_t first_node);
+  void isolated_placed(std::uint32_t vertex);
 
-  [[nodiscard]] const ChartGuide& guide() const { return guide_; }
+  [[nodiscard]] const std::vector<std::uint32_t>& isolated() const { return isolated_; }
+  [[nodiscard]] std::vector<std::uint32_t> source_vertices() const;
+  [[nodiscard]] const std::vector<std::uint32_t>& source_faces() const { return guide_.source_faces(); }
   [[nodiscard]] std::uint32_t joins() const { return joins_; }
-  /// What FastStepReader reads: the symbols, and apart from them what was coded on the side.
-  [[nodiscard]] Buffer finish_symbols(const FastStepTables& tables) const;
-  void count_symbols(std::array<std::array<std::uint64_t, kStepSymbols>, kStepContexts>& counts) const {
-    for (const Symbol s : symbols_) ++counts[s.context][s.symbol];
-  }
+  /// What take_degrees() reads; apart from that, what was coded on the side.
+  [[nodiscard]] Buffer finish_degrees(const FastStepTables& tables) const;
   [[nodiscard]] Buffer finish_side() { return coder_.finish(); }
+  void count_symbols(std::array<std::array<std::uint64_t, kStepSymbols>, kStepContexts>& counts) const {
+    for (std::size_t i = 0; i < symbols_.size(); ++i)
+      ++counts[i < border_ ? kBorderContext : kInnerContext][symbols_[i]];
+  }
 
  private:
-  struct Symbol {
-    std::uint8_t context = 0;
-    std::uint8_t symbol = 0;
-  };
-  std::uint32_t put_degree(std::uint32_t context, std::uint32_t degree, std::uint32_t shift);
+  std::uint32_t put_degree(std::uint32_t degree, std::uint32_t shift);
+  void put_free(std::uint32_t chart_vertex);
 
+  const Chart& chart_;
   RangeEncoder coder_;
   FastSide<RangeEncoder> side_;
   ChartGuide guide_;
-  std::vector<std::uint32_t> degrees_;  ///< faces around each vertex of the chart
-  std::vector<Symbol> symbols_;
+  std::uint32_t border_;
+  std::vector<std::uint32_t> degrees_;   ///< faces around each vertex of the chart
+  std::vector<std::uint32_t> isolated_;  ///< vertices of the chart without faces, in the order of coding
+  std::vector<std::uint8_t> symbols_;
+  LatticePoint last_free_;
   std::uint32_t joins_ = 0;
 };
 

@@ -13,7 +13,8 @@ namespace ramcdb::codec {
 struct FastOutline {
   std::span<const std::uint32_t> loop_sizes;
   ChartCounts counts;
-  std::uint32_t joins = 0;  ///< corners of the front that are split, at most: nodes beyond one per vertex
+  std::uint32_t isolated = 0;  ///< vertices without faces
+  std::uint32_t joins = 0;     ///< corners of the front that are split, at most: nodes beyond one per vertex
 };
 
 /// The walk over the connectivity of a chart, from the border inwards, for encoder and decoder alike (Source decides
@@ -38,7 +39,7 @@ class FastWalk {
  public:
   FastWalk(Source& source, const FastOutline& outline) : source_(source), outline_(outline) {
     for (const std::uint32_t size : outline.loop_sizes) border_ += size;
-    max_vertices_ = border_ + outline.counts.inner_vertices;
+    max_vertices_ = border_ + outline.counts.inner_vertices - outline.isolated;
     nodes_.resize(std::size_t{max_vertices_} + outline.joins);
     plan_.faces.resize(outline.counts.faces);
     plan_.places.resize(outline.counts.inner_vertices);
@@ -52,6 +53,8 @@ class FastWalk {
       begin_at_seed();
       walk_loops();
     }
+    if (vertices_ != max_vertices_) refuse("has fewer vertices than it declares");
+    max_vertices_ += outline_.isolated;
     while (vertices_ < max_vertices_) source_.isolated_placed(add_free_vertex());
     plan_.joins = joins_;
     return std::move(plan_);
@@ -151,7 +154,7 @@ class FastWalk {
 
   /// The face at the edge from `before` to the pivot, with a third vertex that is new or joined.
   void take_step(std::uint32_t before, std::uint32_t pivot) {
-    const std::uint32_t degree = source_.step_degree(nodes_, before, pivot);
+    const std::uint32_t degree = source_.step_degree(before);
     if (degree == 0) return join(before, pivot);
     if (vertices_ == max_vertices_) refuse("has more vertices than it declares");
     describe_place(nodes_[before], nodes_[pivot], nodes_[nodes_[pivot].next], nodes_[nodes_[before].prev], degree);
@@ -197,17 +200,13 @@ class FastWalk {
     const std::uint32_t open_v = std::min(v.open, 4u) - 2, open_p = std::min(p.open, 4u) - 2;
     const std::uint32_t size = std::clamp(degree, 4u, 7u) - 4;
     const std::uint32_t flags = 4 * p.has_face + 2 * v.has_face + pp.has_face;
-    place.predictor = static_cast<std::uint16_t>(((open_v * 3 + open_p) * 4 + size) * 8 + flags);
-    place.trust = static_cast<std::uint16_t>(p.has_face + (v.has_face & (v.open == 2)) + (pp.has_face & (p.open == 2)));
+    place.predictor = ((open_v * 3 + open_p) * 4 + size) * 8 + flags;
   }
 
   /// A vertex without neighbours: of a seed, or isolated.
   std::uint32_t add_free_vertex() {
     if (vertices_ == max_vertices_) refuse("has more vertices than it declares");
-    FastPlace& place = plan_.places[vertices_ - border_];
-    place.pivot = vertices_ == 0 ? 0 : vertices_ - 1;
-    place.around.fill(place.pivot);
-    place.trust = kFastFree;
+    plan_.places[vertices_ - border_].predictor = kFreePlace;
     return vertices_++;
   }
 
@@ -238,7 +237,7 @@ class FastWalk {
   std::vector<FastNode> nodes_;
   std::vector<std::uint32_t> loops_;  ///< a node of each loop that waits, and some that have left
   std::uint32_t border_ = 0;
-  std::uint32_t max_vertices_ = 0;
+  std::uint32_t max_vertices_ = 0;  ///< that have faces; at the end all
   std::uint32_t vertices_ = 0;
   std::uint32_t faces_ = 0;
   std::uint32_t joins_ = 0;
