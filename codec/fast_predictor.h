@@ -29,13 +29,13 @@ using FastPosition = Unsigned4;
 
 /// How far the guesses for all places miss `positions`; 0 for free places.
 [[nodiscard]] std::vector<FastResidual> misses(const FastPlan& plan, std::uint32_t border,
-                                               std::span<const FastPosition> positions, const FastWeights& weights,
+                                               std::span<const FastPosition> positions, const ReadyWeights& weights,
                                                bool wide);
 
-/// The other way round: completes `positions`, of which the border is known. `free`: one point for each free place.
-/// Returns the box of what was completed.
-LatticeBox place_all(const FastPlan& plan, std::uint32_t border, ResidualReader& residuals,
-                     std::span<const LatticePoint> free, const FastWeights& weights, bool wide,
-                     std::vector<FastPosition>& positions);
+/// The other way round: completes `positions`, of which the border is known, and takes the misses off `residuals`.
+/// `free`: one point for each free place.
+void place_all(const FastPlan& plan, std::uint32_t border, ResidualStart& residuals, const MissTables& tables,
+               std::span<const LatticePoint> free, const ReadyWeights& weights, bool wide,
+               std::vector<FastPosition>& positions);
 
 }  // namespace ramcdb::codec

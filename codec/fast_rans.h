@@ -82,24 +82,31 @@ inline std::uint64_t load_le64(const std::uint8_t* from) {
 /// Words of 16 bits, lowest byte first. Past the end come zeros; who reads there is found out by over().
 class WordReader {
  public:
-  explicit WordReader(Bytes bytes) : bytes_(bytes) {}
+  WordReader() = default;
+  explicit WordReader(Bytes bytes) : begin_(bytes.data()), at_(begin_), end_(begin_ + bytes.size()) {}
 
   std::uint32_t take() {
-    const std::uint32_t word = at_ + 2 <= bytes_.size() ? peek() : 0;
-    at_ += 2;
-    return word;
+    if (has(1)) {
+      const std::uint32_t word = peek();
+      skip(1);
+      return word;
+    }
+    over_ = true;
+    return 0;
   }
   /// Whether `count` words are there for sure, so that peek() and skip() will do.
-  [[nodiscard]] bool has(std::size_t count) const { return at_ + 2 * count <= bytes_.size(); }
-  [[nodiscard]] std::uint32_t peek() const { return load_le16(bytes_.data() + at_); }
+  [[nodiscard]] bool has(std::ptrdiff_t count) const { return end_ - at_ >= 2 * count; }
+  [[nodiscard]] std::uint32_t peek() const { return load_le16(at_); }
   void skip(std::size_t count) { at_ += 2 * count; }
 
-  [[nodiscard]] bool over() const { return at_ > bytes_.size(); }
-  [[nodiscard]] std::size_t position() const { return at_; }
+  [[nodiscard]] bool over() const { return over_; }
+  [[nodiscard]] std::size_t position() const { return static_cast<std::size_t>(at_ - begin_); }
 
  private:
-  Bytes bytes_;
-  std::size_t at_ = 0;
+  const std::uint8_t* begin_ = nullptr;
+  const std::uint8_t* at_ = nullptr;
+  const std::uint8_t* end_ = nullptr;
+  bool over_ = false;
 };
 
 /// States that take turns, so that a processor works at all of them at once; so many symbols are worth their bytes.
@@ -127,9 +134,8 @@ class RansDecoder {
   /// The same without a branch: whether a word is needed nobody can guess. REQUIRES: words.has(1).
   std::uint32_t pop_sure(const RansTable& table, WordReader& words) {
     const std::uint32_t symbol = step(table);
-    const bool low = state_ < kRansLow;
-    const std::uint32_t refilled = state_ << 16 | words.peek();
-    state_ = low ? refilled : state_;
+    const std::uint32_t low = state_ < kRansLow;
+    state_ = state_ << (16 * low) | (words.peek() & (0 - low));
     words.skip(low);
     return symbol;
   }

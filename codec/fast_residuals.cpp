@@ -39,17 +39,17 @@ Buffer encode_residuals(const FastPlan& plan, std::uint32_t border, std::span<co
                         const MissTables& tables) {
   if (residuals.empty()) return {};
   const std::uint8_t typical = typical_token(residuals);
-  NearTokens near(border, residuals.size(), typical);
+  std::vector<std::uint32_t> near = near_tokens(border + residuals.size(), typical);
   std::vector<std::array<Token, kResidualStates>> tokens;
   tokens.reserve(residuals.size());
   RawBitWriter raw;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     if (plan.places[i].predictor == kFreePlace) continue;
-    const std::uint32_t sums = near.sums(plan.places[i]);
+    const std::uint32_t sums = near_sums(plan.places[i], near.data());
     std::array<Token, kResidualStates>& taken = tokens.emplace_back();
     for (std::size_t a = 0; a < kResidualStates; ++a)
       taken[a] = take_token(*tables[sums >> 8 * a & 0xff], zigzag(residuals[i][a]), raw);
-    near.set(border + i, taken[0].token | taken[1].token << 8 | taken[2].token << 16);
+    near[border + i] = taken[0].token | taken[1].token << 8 | taken[2].token << 16;
   }
 
   std::array<RansEncoder, kResidualStates> states;
@@ -67,49 +67,37 @@ Buffer encode_residuals(const FastPlan& plan, std::uint32_t border, std::span<co
 
 // ---- decoding ----
 
-namespace {
-
-constexpr std::string_view kStream = "chart's residual stream";
-
-/// Without vertices there is nothing at all.
-std::uint8_t take_typical(ByteReader& reader, bool any) {
-  if (!any) {
+ResidualStart start_residuals(Bytes bytes, std::size_t inner) {
+  ByteReader reader(bytes, "chart's residual stream");
+  ResidualStart start;
+  if (inner == 0) {
     reader.expect_end();
-    return 0;
+    return start;
   }
-  const std::uint8_t typical = reader.byte();
-  if (typical >= kWideToken) reader.fail("has numbers beyond any lattice");
-  return typical;
+  start.typical = reader.byte();
+  if (start.typical >= kWideToken) reader.fail("has numbers beyond any lattice");
+  std::array<RansDecoder, kResidualStates> states;
+  for (RansDecoder& state : states) state = RansDecoder(reader.fixed32());
+  start.numbers = NumberReader(states, reader.rest());
+  start.size = reader.rest().size();
+  return start;
 }
 
-}  // namespace
-
-ResidualReader::ResidualReader(Bytes bytes, const FastPlan& plan, std::uint32_t border, const MissTables& tables)
-    : tables_(&tables), near_(0, 0, 0) {
-  ByteReader reader(bytes, kStream);
-  const bool any = !plan.places.empty();
-  near_ = NearTokens(border, plan.places.size(), take_typical(reader, any));
-  for (RansDecoder& state : states_) state = RansDecoder(any ? reader.fixed32() : kRansLow);
-  words_ = WordReader(reader.rest());
-  raw_ = RawBitReader(reader.rest());
-  size_ = reader.rest().size();
-}
-
-Unsigned4 ResidualReader::with_wide_bits(const std::array<std::uint32_t, kResidualStates>& tokens) {
+NumberReader::WideNumbers NumberReader::wide_numbers(RawBitReader raw, std::uint32_t tokens) {
   Unsigned4 numbers{};
   for (std::size_t a = 0; a < kResidualStates; ++a) {
-    const bool wide = tokens[a] == kWideToken;
-    const std::uint32_t size = wide ? std::min(raw_.take(kWideSize), 32u) : kTokenRanges[tokens[a]].bits;
-    numbers[a] = kTokenRanges[tokens[a]].base + raw_.take(size);
+    const std::uint32_t token = tokens >> 8 * a & 0xff;
+    const std::uint32_t size = token == kWideToken ? std::min(raw.take(kWideSize), 32u) : kTokenRanges[token].bits;
+    numbers[a] = kTokenRanges[token].base + raw.take(size);
   }
-  return numbers;
+  return {numbers, raw};
 }
 
-void ResidualReader::finish() {
+void NumberReader::finish(std::size_t size) {
   const bool padded = raw_.padding() == 0;
   const bool ended =
       std::all_of(states_.begin(), states_.end(), [](const RansDecoder& state) { return state.at_end(); });
-  if (!padded || !ended || words_.position() + raw_.bytes_taken() != size_)
+  if (!padded || !ended || words_.over() || words_.position() + raw_.bytes_taken() != size)
     throw Error(Errc::corrupt, "a chart's residual stream is damaged, or longer or shorter than it says");
 }
 

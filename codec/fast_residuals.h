@@ -61,68 +61,77 @@ inline constexpr auto kTokenRanges = [] {
 /// A usual token of these misses, by the mean of their sizes.
 [[nodiscard]] std::uint8_t typical_token(std::span<const FastResidual> residuals);
 
-/// The tokens of each vertex, in a byte each: what those that are fixed to it look at.
-class NearTokens {
- public:
-  NearTokens(std::uint32_t border, std::size_t inner, std::uint8_t typical)
-      : tokens_(border + inner, typical * 0x010101u) {}
-
-  /// For each coordinate the sum at the three vertices around a place.
-  [[nodiscard]] RAMCDB_INLINE std::uint32_t sums(const FastPlace& place) const {
-    return tokens_[place.pivot] + tokens_[place.around[0]] + tokens_[place.around[1]];
-  }
-  RAMCDB_INLINE void set(std::size_t vertex, std::uint32_t tokens) { tokens_[vertex] = tokens; }
-
- private:
-  std::vector<std::uint32_t> tokens_;
-};
+/// The tokens of a vertex are three bytes of a number. For each coordinate the sum at the three vertices that a place
+/// is fixed to.
+[[nodiscard]] RAMCDB_INLINE std::uint32_t near_sums(const FastPlace& place, const std::uint32_t* tokens) {
+  return tokens[place.pivot] + tokens[place.around[0]] + tokens[place.around[1]];
+}
+[[nodiscard]] inline std::vector<std::uint32_t> near_tokens(std::size_t vertices, std::uint8_t typical) {
+  return std::vector<std::uint32_t>(vertices, typical * 0x010101u);
+}
 
 /// The numbers of all places but free ones, as bytes.
 [[nodiscard]] Buffer encode_residuals(const FastPlan& plan, std::uint32_t border,
                                       std::span<const FastResidual> residuals, const MissTables& tables);
 
-/// Takes them from a stream, in the same order.
-class ResidualReader {
+/// Takes three numbers at a time from a stream. Small, so that it may live in registers.
+class NumberReader {
  public:
-  /// Throws corrupt when `bytes` cannot be of a plan.
-  ResidualReader(Bytes bytes, const FastPlan& plan, std::uint32_t border, const MissTables& tables);
+  NumberReader() = default;
+  NumberReader(const std::array<RansDecoder, kResidualStates>& states, Bytes bytes)
+      : states_(states), words_(bytes), raw_(bytes) {}
 
-  /// The three numbers of vertex number `vertex`, which has this place.
-  [[nodiscard]] RAMCDB_INLINE FastResidual take(const FastPlace& place, std::size_t vertex) {
-    const std::uint32_t sums = near_.sums(place);
-    const std::array<const RansTable*, kResidualStates> tables{(*tables_)[sums & 0xff], (*tables_)[sums >> 8 & 0xff],
-                                                               (*tables_)[sums >> 16 & 0xff]};
-    std::array<std::uint32_t, kResidualStates> tokens;
-    if (words_.has(kResidualStates)) [[likely]]
-      for (std::size_t a = 0; a < kResidualStates; ++a) tokens[a] = states_[a].pop_sure(*tables[a], words_);
-    else
-      for (std::size_t a = 0; a < kResidualStates; ++a) tokens[a] = states_[a].pop(*tables[a], words_);
-    near_.set(vertex, tokens[0] | tokens[1] << 8 | tokens[2] << 16);
-    const bool all_direct = (tokens[0] | tokens[1] | tokens[2]) < kDirectTokens;
-    const Unsigned4 numbers = all_direct ? Unsigned4{tokens[0], tokens[1], tokens[2], 0} : with_raw_bits(tokens);
-    return std::bit_cast<Int4>(numbers >> 1 ^ -(numbers & 1));
+  /// \param tokens becomes the three tokens
+  [[nodiscard]] RAMCDB_INLINE Unsigned4 take(const MissTables& tables, std::uint32_t sums, std::uint32_t& tokens) {
+    const RansTable &tx = *tables[sums & 0xff], &ty = *tables[sums >> 8 & 0xff], &tz = *tables[sums >> 16 & 0xff];
+    std::uint32_t x, y, z;
+    if (words_.has(kResidualStates)) [[likely]] {
+      x = states_[0].pop_sure(tx, words_);
+      y = states_[1].pop_sure(ty, words_);
+      z = states_[2].pop_sure(tz, words_);
+    } else {
+      x = states_[0].pop(tx, words_);
+      y = states_[1].pop(ty, words_);
+      z = states_[2].pop(tz, words_);
+    }
+    tokens = x | y << 8 | z << 16;
+    if (((x | y | z) & kDirectTokens) == 0) return Unsigned4{x, y, z, 0};
+    if (x == kWideToken || y == kWideToken || z == kWideToken) {
+      const auto [numbers, raw] = wide_numbers(raw_, tokens);
+      raw_ = raw;
+      return numbers;
+    }
+    const TokenRange rx = kTokenRanges[x], ry = kTokenRanges[y], rz = kTokenRanges[z];
+    const std::uint64_t window = raw_.window();  // three numbers need 51 bits at most
+    raw_.skip(rx.bits + ry.bits + rz.bits);
+    return Unsigned4{rx.base + RawBitReader::top(window, rx.bits),
+                     ry.base + RawBitReader::top(window << rx.bits, ry.bits),
+                     rz.base + RawBitReader::top(window << rx.bits << ry.bits, rz.bits), 0};
   }
 
-  /// Throws corrupt unless all was taken as an encoder leaves it.
-  void finish();
+  /// Throws corrupt unless all of `size` bytes was taken as an encoder leaves it.
+  void finish(std::size_t size);
 
  private:
-  RAMCDB_INLINE Unsigned4 with_raw_bits(const std::array<std::uint32_t, kResidualStates>& tokens) {
-    if (tokens[0] == kWideToken || tokens[1] == kWideToken || tokens[2] == kWideToken) return with_wide_bits(tokens);
-    const TokenRange x = kTokenRanges[tokens[0]], y = kTokenRanges[tokens[1]], z = kTokenRanges[tokens[2]];
-    const std::uint64_t window = raw_.window();  // three numbers need 51 bits at most
-    raw_.skip(x.bits + y.bits + z.bits);
-    return Unsigned4{x.base + RawBitReader::top(window, x.bits), y.base + RawBitReader::top(window << x.bits, y.bits),
-                     z.base + RawBitReader::top(window << x.bits << y.bits, z.bits), 0};
-  }
-  [[gnu::noinline]] Unsigned4 with_wide_bits(const std::array<std::uint32_t, kResidualStates>& tokens);
+  struct WideNumbers {
+    Unsigned4 numbers;
+    RawBitReader raw;
+  };
+  [[gnu::noinline]] static WideNumbers wide_numbers(RawBitReader raw, std::uint32_t tokens);
 
-  const MissTables* tables_;
-  NearTokens near_;
   std::array<RansDecoder, kResidualStates> states_;
-  WordReader words_{{}};
-  RawBitReader raw_{{}};
-  std::size_t size_ = 0;
+  WordReader words_;
+  RawBitReader raw_;
 };
+
+/// The beginning of a residual stream.
+struct ResidualStart {
+  std::uint8_t typical = 0;
+  NumberReader numbers;
+  std::size_t size = 0;  ///< bytes of what `numbers` reads
+};
+
+/// Throws corrupt when `bytes` cannot be of so many inner vertices.
+[[nodiscard]] ResidualStart start_residuals(Bytes bytes, std::size_t inner);
 
 }  // namespace ramcdb::codec

@@ -37,6 +37,8 @@ FastTables::FastTables() : FastTables(built_in()) {}
 FastTables::FastTables(const FastNumbers& numbers) : numbers_(numbers), digest_(digest_of(numbers)) {
   auto ready = std::make_shared<Ready>();
   for (std::size_t c = 0; c < kStepContexts; ++c) ready->steps[c] = RansTable(numbers.steps[c]);
+  for (std::size_t c = 0; c < kFastPredictors; ++c)
+    std::copy(numbers.weights[c].begin(), numbers.weights[c].end(), ready->weights[c].begin());
   for (std::uint32_t sum = 0; sum < ready->misses.size(); ++sum)
     ready->misses[sum] = &scale_tables()[numbers.scales[miss_class(sum)]];
   ready_ = std::move(ready);

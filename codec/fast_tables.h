@@ -50,6 +50,9 @@ struct FastNumbers {
 /// The frequencies, made ready for decoding.
 using FastStepTables = std::array<RansTable, kStepContexts>;
 
+/// The weights in whole words, as loops over positions like them.
+using ReadyWeights = std::array<std::array<std::int32_t, 8>, kFastPredictors>;
+
 /// The distribution of a number whose neighbours' tokens have this sum.
 using MissTables = std::array<const RansTable*, 256>;
 
@@ -63,7 +66,7 @@ class FastTables {
   explicit FastTables(const FastNumbers& numbers);
 
   [[nodiscard]] const FastNumbers& numbers() const { return numbers_; }
-  [[nodiscard]] const FastWeights& weights() const { return numbers_.weights; }
+  [[nodiscard]] const ReadyWeights& weights() const { return ready_->weights; }
   [[nodiscard]] const FastStepTables& step_tables() const { return ready_->steps; }
   [[nodiscard]] const MissTables& miss_tables() const { return ready_->misses; }
   /// XXH3-64 of all numbers, two bytes each, lowest first, in the order of FastNumbers: stands for the tables in
@@ -75,6 +78,7 @@ class FastTables {
  private:
   struct Ready {
     FastStepTables steps;
+    ReadyWeights weights{};
     MissTables misses;
   };
 

@@ -116,7 +116,7 @@ StepFrequencies FastTrainer::learn_steps() const {
 FastWeights FastTrainer::learn_weights() const {
   std::array<std::array<double, 6>, kFastPredictors> weights{};
   std::array<std::uint64_t, kFastPredictors> count{};
-  for (std::size_t c = 0; c < kFastPredictors; ++c) weights[c] = unscaled(start_.weights()[c]);
+  for (std::size_t c = 0; c < kFastPredictors; ++c) weights[c] = unscaled(start_.numbers().weights[c]);
   for (const Sample& sample : samples_) ++count[sample.predictor];
 
   for (int pass = 0; pass < kPasses; ++pass) {
@@ -137,10 +137,10 @@ FastWeights FastTrainer::learn_weights() const {
     }
     for (std::size_t c = 0; c < kFastPredictors; ++c)
       if (count[c] >= kEnough)
-        weights[c] = problems[c].solve(unscaled(start_.weights()[c]), kPull / static_cast<double>(count[c]));
+        weights[c] = problems[c].solve(unscaled(start_.numbers().weights[c]), kPull / static_cast<double>(count[c]));
   }
 
-  FastWeights rounded = start_.weights();
+  FastWeights rounded = start_.numbers().weights;
   for (std::size_t c = 0; c < kFastPredictors; ++c)
     for (std::size_t k = 0; k < 6; ++k) {
       const double clamped = std::clamp(256 * weights[c][k], -double{kMostPlaceWeight}, double{kMostPlaceWeight});
@@ -163,10 +163,10 @@ void FastTrainer::keep_what_pays(FastWeights& weights) const {
   };
   for (const Sample& sample : samples_) {
     const std::uint32_t c = sample.predictor;
-    saved[c] += cost(sample, start_.weights()[c]) - cost(sample, weights[c]);
+    saved[c] += cost(sample, start_.numbers().weights[c]) - cost(sample, weights[c]);
   }
   for (std::size_t c = 0; c < kFastPredictors; ++c)
-    if (saved[c] <= kClassCost) weights[c] = start_.weights()[c];
+    if (saved[c] <= kClassCost) weights[c] = start_.numbers().weights[c];
 }
 
 FastTrainer::TokenCounts FastTrainer::count_tokens(const FastWeights& weights) const {

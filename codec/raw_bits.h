@@ -29,12 +29,13 @@ class RawBitWriter {
 /// Reads them from the end of `bytes`. Before the beginning come zeros.
 class RawBitReader {
  public:
+  RawBitReader() = default;
   explicit RawBitReader(Bytes bytes) : bytes_(bytes) {}
 
   /// The next bits, highest first: 57 at least.
   [[nodiscard]] std::uint64_t window() const {
     const std::size_t skip = at_ / 8;
-    if (skip + 8 > bytes_.size()) return window_at_end(skip) << at_ % 8;
+    if (skip + 8 > bytes_.size()) return window_at_end(bytes_, skip) << at_ % 8;
     return load_le64(bytes_.data() + (bytes_.size() - skip - 8)) << at_ % 8;
   }
   void skip(std::uint32_t count) { at_ += count; }
@@ -54,10 +55,10 @@ class RawBitReader {
   [[nodiscard]] std::uint32_t padding() { return take(static_cast<std::uint32_t>(8 * bytes_taken() - at_)); }
 
  private:
-  [[nodiscard]] std::uint64_t window_at_end(std::size_t skip) const {
+  [[gnu::noinline]] static std::uint64_t window_at_end(Bytes bytes, std::size_t skip) {
     std::uint64_t window = 0;
     for (std::size_t i = 0; i < 8; ++i)
-      window = window << 8 | (skip + i < bytes_.size() ? bytes_[bytes_.size() - 1 - skip - i] : 0u);
+      window = window << 8 | (skip + i < bytes.size() ? bytes[bytes.size() - 1 - skip - i] : 0u);
     return window;
   }
 
