@@ -34,12 +34,11 @@ struct FastPlan {
 /// A node of the front: a corner of the surface that is still open, between the edges to prev and to next.
 struct FastNode {
   std::uint32_t vertex = 0;
-  std::uint32_t prev = 0;
-  std::uint32_t next = 0;
-  std::uint32_t behind = 0;               ///< third vertex of the known face at the edge to next; without one, `vertex`
-  std::uint32_t has_face = 0;             ///< whether there is one: 0 or 1
-  std::uint32_t open = 0;                 ///< faces that the corner still takes; 0: the node has left the front
-  std::array<std::uint32_t, 2> unused{};  ///< so that nodes lie at multiples of 32 bytes
+  std::uint32_t behind = 0;  ///< third vertex of the known face at the edge to next; without one, `vertex`
+  FastNode* prev = nullptr;
+  FastNode* next = nullptr;
+  std::uint32_t open = 0;      ///< faces that the corner still takes; 0: the node has left the front
+  std::uint32_t has_face = 0;  ///< whether there is one behind: 0 or 1
 };
 
 }  // namespace ramcdb::codec

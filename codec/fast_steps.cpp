@@ -68,10 +68,11 @@ std::uint32_t FastStepWriter::step_degree(std::uint32_t before) {
   return 0;
 }
 
-FastSide<RangeEncoder>::Join FastStepWriter::join_target(const std::vector<FastNode>& nodes, std::uint32_t used,
-                                                         std::uint32_t before, std::uint32_t pivot) {
+FastSide<RangeEncoder>::Join FastStepWriter::join_target(std::span<FastNode> nodes, const FastNode& before,
+                                                         const FastNode& pivot) {
   const ChartGuide::Corner corner = guide_.apex_corner([&](std::uint32_t node) { return nodes[node].open > 0; });
-  return side_.code_join(nodes, used, before, pivot, {corner.node, nodes[corner.node].open - 1 - corner.faces_after});
+  FastNode& there = nodes[corner.node];
+  return side_.code_join(nodes, before, pivot, {&there, there.open - 1 - corner.faces_after});
 }
 
 void FastStepWriter::seed_placed(std::uint32_t first_vertex, std::uint32_t first_node) {

@@ -39,11 +39,11 @@ class FastSide {
   LatticePoint code_free(LatticePoint before, LatticePoint point);
 
   struct Join {
-    std::uint32_t there = 0;
+    FastNode* there = nullptr;
     std::uint32_t open_here = 0;
   };
-  Join code_join(const std::vector<FastNode>& nodes, std::uint32_t used, std::uint32_t before, std::uint32_t pivot,
-                 Join join);
+  /// \param nodes all that were made so far
+  Join code_join(std::span<FastNode> nodes, const FastNode& before, const FastNode& pivot, Join join);
 
  private:
   static constexpr std::uint32_t kJoinReach = 255;
@@ -52,10 +52,9 @@ class FastSide {
   static bool joinable(const FastNode& node) { return node.open >= 3; }
   /// How many joinable corners lie before `there` on the way that `step` takes from `from`; kFar beyond the reach.
   template <class Step>
-  static std::uint32_t distance(const std::vector<FastNode>& nodes, std::uint32_t from, std::uint32_t there, Step step);
+  static std::uint32_t distance(const FastNode* from, const FastNode* there, Step step);
   template <class Step>
-  static std::uint32_t at_distance(const std::vector<FastNode>& nodes, std::uint32_t from, std::uint32_t distance,
-                                   Step step);
+  static FastNode* at_distance(FastNode* from, std::uint32_t distance, Step step);
 
   Coder& coder_;
   AdaptiveBit near_{52000, 4};
@@ -80,45 +79,44 @@ LatticePoint FastSide<Coder>::code_free(LatticePoint before, LatticePoint point)
 
 template <class Coder>
 template <class Step>
-std::uint32_t FastSide<Coder>::distance(const std::vector<FastNode>& nodes, std::uint32_t from, std::uint32_t there,
-                                        Step step) {
+std::uint32_t FastSide<Coder>::distance(const FastNode* from, const FastNode* there, Step step) {
   std::uint32_t passed = 0;
-  for (std::uint32_t i = 0, node = from; i < kJoinReach; ++i, node = step(nodes[node])) {
-    if (node == there) return passed;
-    passed += joinable(nodes[node]);
+  for (std::uint32_t i = 0; i < kJoinReach; ++i, from = step(*from)) {
+    if (from == there) return passed;
+    passed += joinable(*from);
   }
   return kFar;
 }
 
 template <class Coder>
 template <class Step>
-std::uint32_t FastSide<Coder>::at_distance(const std::vector<FastNode>& nodes, std::uint32_t from,
-                                           std::uint32_t distance, Step step) {
-  for (std::uint32_t i = 0, node = from; i < kJoinReach; ++i, node = step(nodes[node]))
-    if (joinable(nodes[node]) && distance-- == 0) return node;
+FastNode* FastSide<Coder>::at_distance(FastNode* from, std::uint32_t distance, Step step) {
+  for (std::uint32_t i = 0; i < kJoinReach; ++i, from = step(*from))
+    if (joinable(*from) && distance-- == 0) return from;
   throw Error(Errc::corrupt, "a chart joins a corner out of reach");
 }
 
 template <class Coder>
-typename FastSide<Coder>::Join FastSide<Coder>::code_join(const std::vector<FastNode>& nodes, std::uint32_t used,
-                                                          std::uint32_t before, std::uint32_t pivot, Join join) {
+typename FastSide<Coder>::Join FastSide<Coder>::code_join(std::span<FastNode> nodes, const FastNode& before,
+                                                          const FastNode& pivot, Join join) {
   const auto forwards = [](const FastNode& node) { return node.next; };
   const auto backwards = [](const FastNode& node) { return node.prev; };
-  const std::uint32_t ahead = nodes[nodes[pivot].next].next, back = nodes[nodes[before].prev].prev;
-  std::uint32_t steps_ahead = kFar, steps_back = kFar;
+  FastNode *const ahead = pivot.next->next, *const back = before.prev->prev;
+  std::uint32_t steps_ahead = kFar, steps_back = kFar, number = 0;
   if constexpr (Coder::kEncodes) {
-    steps_ahead = distance(nodes, ahead, join.there, forwards);
-    steps_back = distance(nodes, back, join.there, backwards);
+    steps_ahead = distance(ahead, join.there, forwards);
+    steps_back = distance(back, join.there, backwards);
+    number = static_cast<std::uint32_t>(&nodes.back() - join.there);
   }
   if (coder_.code(near_, std::min(steps_ahead, steps_back) != kFar)) {
     if (coder_.code(backwards_, steps_back < steps_ahead))
-      join.there = at_distance(nodes, back, distance_[1].code(coder_, steps_back), backwards);
+      join.there = at_distance(back, distance_[1].code(coder_, steps_back), backwards);
     else
-      join.there = at_distance(nodes, ahead, distance_[0].code(coder_, steps_ahead), forwards);
+      join.there = at_distance(ahead, distance_[0].code(coder_, steps_ahead), forwards);
   } else {
-    const std::uint32_t number = number_.code(coder_, used - 1 - join.there);
-    if (number >= used) throw Error(Errc::corrupt, "a chart joins a corner that it does not have");
-    join.there = used - 1 - number;
+    number = number_.code(coder_, number);
+    if (number >= nodes.size()) throw Error(Errc::corrupt, "a chart joins a corner that it does not have");
+    join.there = &nodes[nodes.size() - 1 - number];
   }
   join.open_here = 1 + (open_here_.code(coder_, join.open_here - 1) & 0x7fffffff);
   return join;
@@ -142,9 +140,8 @@ class FastStepReader {
     const std::uint32_t symbol = *symbol_++;
     return symbol == kLargeSymbol ? large() : symbol;
   }
-  FastSide<RangeDecoder>::Join join_target(const std::vector<FastNode>& nodes, std::uint32_t used, std::uint32_t before,
-                                           std::uint32_t pivot) {
-    return side_.code_join(nodes, used, before, pivot, {});
+  FastSide<RangeDecoder>::Join join_target(std::span<FastNode> nodes, const FastNode& before, const FastNode& pivot) {
+    return side_.code_join(nodes, before, pivot, {});
   }
   void closed(std::uint32_t /*before*/) {}
   void vertex_placed(std::uint32_t /*before*/, std::uint32_t /*node*/, std::uint32_t /*vertex*/) {}
@@ -187,8 +184,7 @@ class FastStepWriter {
   std::uint32_t border_degree(std::uint32_t vertex) { return put_degree(degrees_[vertex], 1); }
   std::uint32_t seed_degree(std::uint32_t vertex) { return put_degree(degrees_[guide_.source_vertices()[vertex]], 0); }
   std::uint32_t step_degree(std::uint32_t before);
-  FastSide<RangeEncoder>::Join join_target(const std::vector<FastNode>& nodes, std::uint32_t used, std::uint32_t before,
-                                           std::uint32_t pivot);
+  FastSide<RangeEncoder>::Join join_target(std::span<FastNode> nodes, const FastNode& before, const FastNode& pivot);
   void closed(std::uint32_t before) {
     guide_.turn_to(before);
     guide_.fan_closed(before);
