@@ -134,9 +134,9 @@ class RansDecoder {
   /// The same without a branch: whether a word is needed nobody can guess. REQUIRES: words.has(1).
   std::uint32_t pop_sure(const RansTable& table, WordReader& words) {
     const std::uint32_t symbol = step(table);
-    const std::uint32_t low = state_ < kRansLow;
-    state_ = state_ << (16 * low) | (words.peek() & (0 - low));
-    words.skip(low);
+    const std::uint32_t all_if_low = 0u - static_cast<std::uint32_t>(state_ < kRansLow);
+    state_ = state_ << (all_if_low & 16) | (words.peek() & all_if_low);
+    words.skip(all_if_low & 1);
     return symbol;
   }
   [[nodiscard]] bool at_end() const { return state_ == kRansLow; }
