@@ -55,24 +55,6 @@ void check_plausible(const ByteReader& reader, const FastContext& context, std::
   if (context.counts.faces > 2 * (vertices + joins)) reader.fail("declares more faces than it can have");
 }
 
-std::vector<LatticePoint> checked_points(const std::vector<FastPosition>& positions, std::uint32_t border,
-                                         const LatticeBox& box) {
-  std::vector<LatticePoint> points(positions.size());
-  Int4 low{box.lo.x, box.lo.y, box.lo.z, 0}, high{box.hi.x, box.hi.y, box.hi.z, 0};
-  const Int4 lowest = low, highest = high;
-  for (std::size_t v = 0; v < points.size(); ++v) {
-    const Int4 p = std::bit_cast<Int4>(positions[v]);
-    points[v] = {p[0], p[1], p[2]};
-    if (v < border) continue;
-    low = p < low ? p : low;
-    high = p > high ? p : high;
-  }
-  for (int a = 0; a < 3; ++a)
-    if (low[a] < lowest[a] || high[a] > highest[a])
-      throw Error(Errc::corrupt, "a chart's vertex lies outside of the chart's range");
-  return points;
-}
-
 }  // namespace
 
 FastChart decode_fast(Bytes bytes, const FastContext& context) {
@@ -94,7 +76,7 @@ FastChart decode_fast(Bytes bytes, const FastContext& context) {
   chart.geometry_cost = 2048 * std::uint64_t{reader.rest().size()} + steps.free_cost();
   chart.connectivity_cost = 2048 * std::uint64_t{bytes.size()} - chart.geometry_cost;
   ResidualStart residuals = start_residuals(reader.rest(), plan.places.size());
-  std::vector<FastPosition> positions(border + plan.places.size());
+  RawArray<FastPosition> positions(border + plan.places.size());
   for (std::uint32_t v = 0; v < border; ++v) positions[v] = fast_position(context.border[v]);
   place_all(plan, border, residuals, tables.miss_tables(), steps.free_points(), tables.weights(),
             needs_wide_sums(context.box, context.border), positions);

@@ -1,5 +1,6 @@
 #include "codec/fast_predictor.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace ramcdb::codec {
@@ -42,22 +43,23 @@ void find_misses(const FastPlan& plan, const FastPosition* positions, const Fast
       misses[i] = std::bit_cast<Int4>(inner[i] - Sum::guess(place, positions, weights[place.predictor]));
 }
 
-/// \param near tokens around vertices
 template <class Sum>
-RAMCDB_INLINE void place(const FastPlan& plan, std::size_t vertex, NumberReader& reader, const MissTables& tables,
+RAMCDB_INLINE void place(const FastPlan& plan, std::size_t vertex, ResidualStart& residuals, const MissTables& tables,
                          const LatticePoint* free, const ReadyWeights& weights, std::uint32_t* near,
                          FastPosition* positions) {
-  NumberReader numbers = reader;  // so that its states may live in registers
+  NumberReader numbers = residuals.numbers;  // so that its states may live in registers
+  const std::uint32_t typical = spread_token(residuals.typical);
   for (const FastPlace& place : plan.places) {
     if (place.predictor == kFreePlace) [[unlikely]] {
       positions[vertex] = fast_position(*free++);
+      near[vertex] = typical;
     } else {
       const Unsigned4 zigzag = numbers.take(tables, near_sums(place, near), near[vertex]);
       positions[vertex] = Sum::guess(place, positions, weights[place.predictor]) + (zigzag >> 1 ^ -(zigzag & 1));
     }
     ++vertex;
   }
-  reader = numbers;
+  residuals.numbers = numbers;
 }
 
 }  // namespace
@@ -82,13 +84,34 @@ std::vector<FastResidual> misses(const FastPlan& plan, std::uint32_t border, std
 RAMCDB_FAST_CLONES
 void place_all(const FastPlan& plan, std::uint32_t border, ResidualStart& residuals, const MissTables& tables,
                std::span<const LatticePoint> free, const ReadyWeights& weights, bool wide,
-               std::vector<FastPosition>& positions) {
-  std::vector<std::uint32_t> near = near_tokens(positions.size(), residuals.typical);
-  NumberReader& numbers = residuals.numbers;
+               RawArray<FastPosition>& positions) {
+  RawArray<std::uint32_t> near(positions.size());
+  std::fill_n(near.begin(), border, spread_token(residuals.typical));
   if (wide)
-    place<WideSum>(plan, border, numbers, tables, free.data(), weights, near.data(), positions.data());
+    place<WideSum>(plan, border, residuals, tables, free.data(), weights, near.data(), positions.data());
   else
-    place<NarrowSum>(plan, border, numbers, tables, free.data(), weights, near.data(), positions.data());
+    place<NarrowSum>(plan, border, residuals, tables, free.data(), weights, near.data(), positions.data());
+}
+
+RAMCDB_FAST_CLONES
+std::vector<LatticePoint> checked_points(const RawArray<FastPosition>& positions, std::uint32_t border,
+                                         const LatticeBox& box) {
+  std::vector<LatticePoint> points(positions.size());
+  const Int4 lowest{box.lo.x, box.lo.y, box.lo.z, 0}, highest{box.hi.x, box.hi.y, box.hi.z, 0};
+  Int4 outside{};
+  const auto copy = [&](std::size_t v) {
+    const Int4 p = std::bit_cast<Int4>(positions[v]);
+    points[v] = {p[0], p[1], p[2]};
+    return p;
+  };
+  for (std::size_t v = 0; v < border; ++v) (void)copy(v);
+  for (std::size_t v = border; v < points.size(); ++v) {
+    const Int4 p = copy(v);
+    outside |= (p < lowest) | (p > highest);
+  }
+  if (outside[0] != 0 || outside[1] != 0 || outside[2] != 0)
+    throw Error(Errc::corrupt, "a chart's vertex lies outside of the chart's range");
+  return points;
 }
 
 }  // namespace ramcdb::codec

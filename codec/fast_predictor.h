@@ -36,6 +36,10 @@ using FastPosition = Unsigned4;
 /// `free`: one point for each free place.
 void place_all(const FastPlan& plan, std::uint32_t border, ResidualStart& residuals, const MissTables& tables,
                std::span<const LatticePoint> free, const ReadyWeights& weights, bool wide,
-               std::vector<FastPosition>& positions);
+               RawArray<FastPosition>& positions);
+
+/// The same as plain points. Throws corrupt when an inner vertex lies outside of `box`.
+[[nodiscard]] std::vector<LatticePoint> checked_points(const RawArray<FastPosition>& positions, std::uint32_t border,
+                                                       const LatticeBox& box);
 
 }  // namespace ramcdb::codec

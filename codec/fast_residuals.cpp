@@ -39,7 +39,7 @@ Buffer encode_residuals(const FastPlan& plan, std::uint32_t border, std::span<co
                         const MissTables& tables) {
   if (residuals.empty()) return {};
   const std::uint8_t typical = typical_token(residuals);
-  std::vector<std::uint32_t> near = near_tokens(border + residuals.size(), typical);
+  std::vector<std::uint32_t> near(border + residuals.size(), spread_token(typical));
   std::vector<std::array<Token, kResidualStates>> tokens;
   tokens.reserve(residuals.size());
   RawBitWriter raw;

@@ -66,9 +66,7 @@ inline constexpr auto kTokenRanges = [] {
 [[nodiscard]] RAMCDB_INLINE std::uint32_t near_sums(const FastPlace& place, const std::uint32_t* tokens) {
   return tokens[place.pivot] + tokens[place.around[0]] + tokens[place.around[1]];
 }
-[[nodiscard]] inline std::vector<std::uint32_t> near_tokens(std::size_t vertices, std::uint8_t typical) {
-  return std::vector<std::uint32_t>(vertices, typical * 0x010101u);
-}
+[[nodiscard]] inline std::uint32_t spread_token(std::uint8_t token) { return token * 0x010101u; }
 
 /// The numbers of all places but free ones, as bytes.
 [[nodiscard]] Buffer encode_residuals(const FastPlan& plan, std::uint32_t border,

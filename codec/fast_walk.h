@@ -41,9 +41,9 @@ class FastWalk {
   FastWalk(Source& source, const FastOutline& outline) : source_(source), outline_(outline) {
     for (const std::uint32_t size : outline.loop_sizes) border_ += size;
     max_vertices_ = border_ + outline.counts.inner_vertices - outline.isolated;
-    nodes_.resize(std::size_t{max_vertices_} + outline.joins);
+    nodes_ = RawArray<FastNode>(std::size_t{max_vertices_} + outline.joins);
     plan_.faces.resize(outline.counts.faces);
-    plan_.places.resize(outline.counts.inner_vertices);
+    plan_.places = RawArray<FastPlace>(outline.counts.inner_vertices);
   }
 
   /// Throws corrupt when the source describes no chart of these counts.
@@ -210,7 +210,7 @@ class FastWalk {
   /// The corner `there` is split: into what lies between pivot's side and the face, a new node, and the rest.
   void join(FastNode& before, FastNode& pivot) {
     if (joins_++ == outline_.joins) refuse("has more joins than it declares");
-    const auto [there, open_here] = source_.join_target(std::span(nodes_).first(used_), before, pivot);
+    const auto [there, open_here] = source_.join_target(std::span(nodes_.data(), used_), before, pivot);
     if (there == &pivot || there == &before || there == pivot.next || there == before.prev || open_here < 1 ||
         std::uint64_t{open_here} + 2 > there->open)
       refuse("joins what cannot be joined");
@@ -264,7 +264,7 @@ class FastWalk {
   Source& source_;
   FastOutline outline_;
   FastPlan plan_;
-  std::vector<FastNode> nodes_;
+  RawArray<FastNode> nodes_;
   std::vector<FastNode*> loops_;  ///< a node of each loop that waits, and some that have left
   std::uint32_t border_ = 0;
   std::uint32_t max_vertices_ = 0;  ///< that have faces; at the end all
