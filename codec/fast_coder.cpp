@@ -75,12 +75,12 @@ FastChart decode_fast(Bytes bytes, const FastContext& context) {
   FastChart chart;
   chart.geometry_cost = 2048 * std::uint64_t{reader.rest().size()} + steps.free_cost();
   chart.connectivity_cost = 2048 * std::uint64_t{bytes.size()} - chart.geometry_cost;
-  ResidualStart residuals = start_residuals(reader.rest(), plan.places.size());
+  ResidualTokens misses = decode_tokens(reader.rest(), plan, border, tables.miss_tables());
   RawArray<FastPosition> positions(border + plan.places.size());
   for (std::uint32_t v = 0; v < border; ++v) positions[v] = fast_position(context.border[v]);
-  place_all(plan, border, residuals, tables.miss_tables(), steps.free_points(), tables.weights(),
-            needs_wide_sums(context.box, context.border), positions);
-  if (inner > 0) residuals.numbers.finish(residuals.size);
+  place_all(plan, border, misses, steps.free_points(), tables.weights(), needs_wide_sums(context.box, context.border),
+            positions);
+  finish_raw_bits(misses);
   chart.positions = checked_points(positions, border, context.box);
   chart.faces = std::move(plan.faces);
   return chart;

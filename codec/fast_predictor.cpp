@@ -1,6 +1,5 @@
 #include "codec/fast_predictor.h"
 
-#include <algorithm>
 #include <bit>
 
 namespace ramcdb::codec {
@@ -44,22 +43,22 @@ void find_misses(const FastPlan& plan, const FastPosition* positions, const Fast
 }
 
 template <class Sum>
-RAMCDB_INLINE void place(const FastPlan& plan, std::size_t vertex, ResidualStart& residuals, const MissTables& tables,
-                         const LatticePoint* free, const ReadyWeights& weights, std::uint32_t* near,
-                         FastPosition* positions) {
-  NumberReader numbers = residuals.numbers;  // so that its states may live in registers
-  const std::uint32_t typical = spread_token(residuals.typical);
+RAMCDB_INLINE void place(const FastPlan& plan, std::uint32_t border, ResidualTokens& misses, const LatticePoint* free,
+                         const ReadyWeights& weights, FastPosition* positions) {
+  RawBitReader raw = misses.raw;  // so that it may live in registers
+  const std::uint32_t* tokens = misses.of_vertex.data() + border;
+  FastPosition* position = positions + border;
   for (const FastPlace& place : plan.places) {
     if (place.predictor == kFreePlace) [[unlikely]] {
-      positions[vertex] = fast_position(*free++);
-      near[vertex] = typical;
+      *position = fast_position(*free++);
     } else {
-      const Unsigned4 zigzag = numbers.take(tables, near_sums(place, near), near[vertex]);
-      positions[vertex] = Sum::guess(place, positions, weights[place.predictor]) + (zigzag >> 1 ^ -(zigzag & 1));
+      const Unsigned4 zigzag = take_numbers(raw, *tokens);
+      *position = Sum::guess(place, positions, weights[place.predictor]) + (zigzag >> 1 ^ -(zigzag & 1));
     }
-    ++vertex;
+    ++tokens;
+    ++position;
   }
-  residuals.numbers = numbers;
+  misses.raw = raw;
 }
 
 }  // namespace
@@ -82,15 +81,12 @@ std::vector<FastResidual> misses(const FastPlan& plan, std::uint32_t border, std
 }
 
 RAMCDB_FAST_CLONES
-void place_all(const FastPlan& plan, std::uint32_t border, ResidualStart& residuals, const MissTables& tables,
-               std::span<const LatticePoint> free, const ReadyWeights& weights, bool wide,
-               RawArray<FastPosition>& positions) {
-  RawArray<std::uint32_t> near(positions.size());
-  std::fill_n(near.begin(), border, spread_token(residuals.typical));
+void place_all(const FastPlan& plan, std::uint32_t border, ResidualTokens& misses, std::span<const LatticePoint> free,
+               const ReadyWeights& weights, bool wide, RawArray<FastPosition>& positions) {
   if (wide)
-    place<WideSum>(plan, border, residuals, tables, free.data(), weights, near.data(), positions.data());
+    place<WideSum>(plan, border, misses, free.data(), weights, positions.data());
   else
-    place<NarrowSum>(plan, border, residuals, tables, free.data(), weights, near.data(), positions.data());
+    place<NarrowSum>(plan, border, misses, free.data(), weights, positions.data());
 }
 
 RAMCDB_FAST_CLONES

@@ -32,11 +32,10 @@ using FastPosition = Unsigned4;
                                                std::span<const FastPosition> positions, const ReadyWeights& weights,
                                                bool wide);
 
-/// The other way round: completes `positions`, of which the border is known, and takes the misses off `residuals`.
+/// The other way round: completes `positions`, of which the border is known, and takes the raw bits of `misses`.
 /// `free`: one point for each free place.
-void place_all(const FastPlan& plan, std::uint32_t border, ResidualStart& residuals, const MissTables& tables,
-               std::span<const LatticePoint> free, const ReadyWeights& weights, bool wide,
-               RawArray<FastPosition>& positions);
+void place_all(const FastPlan& plan, std::uint32_t border, ResidualTokens& misses, std::span<const LatticePoint> free,
+               const ReadyWeights& weights, bool wide, RawArray<FastPosition>& positions);
 
 /// The same as plain points. Throws corrupt when an inner vertex lies outside of `box`.
 [[nodiscard]] std::vector<LatticePoint> checked_points(const RawArray<FastPosition>& positions, std::uint32_t border,

@@ -67,37 +67,75 @@ Buffer encode_residuals(const FastPlan& plan, std::uint32_t border, std::span<co
 
 // ---- decoding ----
 
-ResidualStart start_residuals(Bytes bytes, std::size_t inner) {
-  ByteReader reader(bytes, "chart's residual stream");
-  ResidualStart start;
-  if (inner == 0) {
-    reader.expect_end();
-    return start;
+namespace {
+
+/// The loop over all tokens; nothing in it depends on a position.
+RAMCDB_FAST_CLONES
+void take_tokens(const FastPlan& plan, std::size_t vertex, std::uint32_t typical, const MissTables& tables,
+                 std::array<RansDecoder, kResidualStates>& all_states, WordReader& all_words, std::uint32_t* tokens) {
+  std::array<RansDecoder, kResidualStates> states = all_states;  // so that they may live in registers
+  WordReader words = all_words;
+  for (const FastPlace& place : plan.places) {
+    if (place.predictor == kFreePlace) [[unlikely]] {
+      tokens[vertex++] = typical;
+      continue;
+    }
+    const std::uint32_t sums = near_sums(place, tokens);
+    const RansTable &tx = *tables[sums & 0xff], &ty = *tables[sums >> 8 & 0xff], &tz = *tables[sums >> 16];
+    std::uint32_t x, y, z;
+    if (words.has(kResidualStates)) [[likely]] {
+      x = states[0].pop_sure(tx, words);
+      y = states[1].pop_sure(ty, words);
+      z = states[2].pop_sure(tz, words);
+    } else {
+      x = states[0].pop(tx, words);
+      y = states[1].pop(ty, words);
+      z = states[2].pop(tz, words);
+    }
+    tokens[vertex++] = x | y << 8 | z << 16;
   }
-  start.typical = reader.byte();
-  if (start.typical >= kWideToken) reader.fail("has numbers beyond any lattice");
-  std::array<RansDecoder, kResidualStates> states;
-  for (RansDecoder& state : states) state = RansDecoder(reader.fixed32());
-  start.numbers = NumberReader(states, reader.rest());
-  start.size = reader.rest().size();
-  return start;
+  all_states = states;
+  all_words = words;
 }
 
-NumberReader::WideNumbers NumberReader::wide_numbers(RawBitReader raw, std::uint32_t tokens) {
+}  // namespace
+
+ResidualTokens decode_tokens(Bytes bytes, const FastPlan& plan, std::uint32_t border, const MissTables& tables) {
+  ByteReader reader(bytes, "chart's residual stream");
+  ResidualTokens tokens;
+  tokens.of_vertex = RawArray<std::uint32_t>(border + plan.places.size());
+  if (plan.places.size() == 0) {
+    reader.expect_end();
+    return tokens;
+  }
+  const std::uint8_t typical = reader.byte();
+  if (typical >= kWideToken) reader.fail("has numbers beyond any lattice");
+  std::array<RansDecoder, kResidualStates> states;
+  for (RansDecoder& state : states) state = RansDecoder(reader.fixed32());
+  WordReader words(reader.rest());
+  std::fill_n(tokens.of_vertex.begin(), border, spread_token(typical));
+  take_tokens(plan, border, spread_token(typical), tables, states, words, tokens.of_vertex.data());
+  const bool ended = std::all_of(states.begin(), states.end(), [](const RansDecoder& state) { return state.at_end(); });
+  if (!ended || words.over()) reader.fail("is damaged or cut short");
+  (void)reader.take(words.position());
+  tokens.raw = RawBitReader(reader.rest());
+  tokens.raw_size = reader.rest().size();
+  return tokens;
+}
+
+Unsigned4 wide_numbers(RawBitReader& raw, std::uint32_t tokens) {
   Unsigned4 numbers{};
   for (std::size_t a = 0; a < kResidualStates; ++a) {
     const std::uint32_t token = tokens >> 8 * a & 0xff;
     const std::uint32_t size = token == kWideToken ? std::min(raw.take(kWideSize), 32u) : kTokenRanges[token].bits;
     numbers[a] = kTokenRanges[token].base + raw.take(size);
   }
-  return {numbers, raw};
+  return numbers;
 }
 
-void NumberReader::finish(std::size_t size) {
-  const bool padded = raw_.padding() == 0;
-  const bool ended =
-      std::all_of(states_.begin(), states_.end(), [](const RansDecoder& state) { return state.at_end(); });
-  if (!padded || !ended || words_.over() || words_.position() + raw_.bytes_taken() != size)
+void finish_raw_bits(ResidualTokens& tokens) {
+  const bool padded = tokens.raw.padding() == 0;
+  if (!padded || tokens.raw.bytes_taken() != tokens.raw_size)
     throw Error(Errc::corrupt, "a chart's residual stream is damaged, or longer or shorter than it says");
 }
 

@@ -11,6 +11,7 @@
 #include "codec/fast_scales.h"
 #include "codec/fast_tables.h"
 #include "codec/fast_vector.h"
+#include "codec/raw_array.h"
 #include "codec/raw_bits.h"
 #include "codec/varint.h"
 #include "ramcdb/bytes.h"
@@ -72,64 +73,39 @@ inline constexpr auto kTokenRanges = [] {
 [[nodiscard]] Buffer encode_residuals(const FastPlan& plan, std::uint32_t border,
                                       std::span<const FastResidual> residuals, const MissTables& tables);
 
-/// Takes three numbers at a time from a stream. Small, so that it may live in registers.
-class NumberReader {
- public:
-  NumberReader() = default;
-  NumberReader(const std::array<RansDecoder, kResidualStates>& states, Bytes bytes)
-      : states_(states), words_(bytes), raw_(bytes) {}
+/// A residual stream whose tokens were taken; raw bits are left, since nothing waits for them.
+struct ResidualTokens {
+  RawArray<std::uint32_t> of_vertex;  ///< three bytes each; border first
+  RawBitReader raw;
+  std::size_t raw_size = 0;  ///< bytes of all raw bits
+};
 
-  /// \param tokens becomes the three tokens
-  [[nodiscard]] RAMCDB_INLINE Unsigned4 take(const MissTables& tables, std::uint32_t sums, std::uint32_t& tokens) {
-    const RansTable &tx = *tables[sums & 0xff], &ty = *tables[sums >> 8 & 0xff], &tz = *tables[sums >> 16 & 0xff];
-    std::uint32_t x, y, z;
-    if (words_.has(kResidualStates)) [[likely]] {
-      x = states_[0].pop_sure(tx, words_);
-      y = states_[1].pop_sure(ty, words_);
-      z = states_[2].pop_sure(tz, words_);
-    } else {
-      x = states_[0].pop(tx, words_);
-      y = states_[1].pop(ty, words_);
-      z = states_[2].pop(tz, words_);
-    }
-    tokens = x | y << 8 | z << 16;
-    if (((x | y | z) & kDirectTokens) == 0) return Unsigned4{x, y, z, 0};
-    if (x == kWideToken || y == kWideToken || z == kWideToken) {
-      const auto [numbers, raw] = wide_numbers(raw_, tokens);
-      raw_ = raw;
-      return numbers;
-    }
-    const TokenRange rx = kTokenRanges[x], ry = kTokenRanges[y], rz = kTokenRanges[z];
-    const std::uint64_t window = raw_.window();  // three numbers need 51 bits at most
-    raw_.skip(rx.bits + ry.bits + rz.bits);
-    return Unsigned4{rx.base + RawBitReader::top(window, rx.bits),
-                     ry.base + RawBitReader::top(window << rx.bits, ry.bits),
-                     rz.base + RawBitReader::top(window << rx.bits << ry.bits, rz.bits), 0};
+/// Throws corrupt when `bytes` cannot be of such a plan.
+[[nodiscard]] ResidualTokens decode_tokens(Bytes bytes, const FastPlan& plan, std::uint32_t border,
+                                           const MissTables& tables);
+
+/// Throws corrupt unless all raw bits were taken as an encoder leaves them.
+void finish_raw_bits(ResidualTokens& tokens);
+
+/// The three numbers of these tokens when one of them is wide.
+[[nodiscard]] Unsigned4 wide_numbers(RawBitReader& raw, std::uint32_t tokens);
+
+/// The three numbers of these tokens.
+[[nodiscard]] RAMCDB_INLINE Unsigned4 take_numbers(RawBitReader& raw, std::uint32_t tokens) {
+  const std::uint32_t x = tokens & 0xff, y = tokens >> 8 & 0xff, z = tokens >> 16;
+  if (((x | y | z) & kDirectTokens) == 0) return Unsigned4{x, y, z, 0};
+  if (x == kWideToken || y == kWideToken || z == kWideToken) [[unlikely]] {
+    RawBitReader copy = raw;  // so that the other one may live in registers
+    const Unsigned4 numbers = wide_numbers(copy, tokens);
+    raw = copy;
+    return numbers;
   }
-
-  /// Throws corrupt unless all of `size` bytes was taken as an encoder leaves it.
-  void finish(std::size_t size);
-
- private:
-  struct WideNumbers {
-    Unsigned4 numbers;
-    RawBitReader raw;
-  };
-  [[gnu::noinline]] static WideNumbers wide_numbers(RawBitReader raw, std::uint32_t tokens);
-
-  std::array<RansDecoder, kResidualStates> states_;
-  WordReader words_;
-  RawBitReader raw_;
-};
-
-/// The beginning of a residual stream.
-struct ResidualStart {
-  std::uint8_t typical = 0;
-  NumberReader numbers;
-  std::size_t size = 0;  ///< bytes of what `numbers` reads
-};
-
-/// Throws corrupt when `bytes` cannot be of so many inner vertices.
-[[nodiscard]] ResidualStart start_residuals(Bytes bytes, std::size_t inner);
+  const TokenRange rx = kTokenRanges[x], ry = kTokenRanges[y], rz = kTokenRanges[z];
+  const std::uint64_t window = raw.window();  // three numbers need 51 bits at most
+  raw.skip(rx.bits + ry.bits + rz.bits);
+  return Unsigned4{rx.base + RawBitReader::top(window, rx.bits),
+                   ry.base + RawBitReader::top(window << rx.bits, ry.bits),
+                   rz.base + RawBitReader::top(window << rx.bits << ry.bits, rz.bits), 0};
+}
 
 }  // namespace ramcdb::codec
