@@ -65,7 +65,7 @@ inline constexpr auto kTokenRanges = [] {
 /// The tokens of a vertex are three bytes of a number. For each coordinate the sum at the three vertices that a place
 /// is fixed to.
 [[nodiscard]] RAMCDB_INLINE std::uint32_t near_sums(const FastPlace& place, const std::uint32_t* tokens) {
-  return tokens[place.pivot] + tokens[place.around[0]] + tokens[place.around[1]];
+  return tokens[place.pivot] + tokens[place.around[1]] + tokens[place.around[0]];  // the newest last
 }
 [[nodiscard]] inline std::uint32_t spread_token(std::uint8_t token) { return token * 0x010101u; }
 

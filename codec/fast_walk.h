@@ -147,9 +147,9 @@ class FastWalk {
     keep(at);
   }
 
-  /// The corner among the next five that takes the fewest faces; of equal ones the first.
+  /// The corner among the next four that takes the fewest faces; of equal ones the first.
   [[nodiscard]] static RAMCDB_INLINE FastNode* next_pivot(FastNode* node) {
-    std::array<FastNode*, 5> nodes;
+    std::array<FastNode*, 4> nodes;
     std::uint32_t fewest = ~std::uint32_t{0};  // no branches: nobody could guess them
     for (std::uint32_t i = 0; i < nodes.size(); ++i, node = node->next) {
       nodes[i] = node;
