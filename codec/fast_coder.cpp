@@ -14,13 +14,15 @@ namespace ramcdb::codec {
 std::optional<FastStream> encode_fast(const Chart& chart, const FastContext& context) {
   const std::optional<HalfEdges> edges = HalfEdges::of(chart);
   if (!edges) return std::nullopt;
+  const FastTables& tables = context.tables->fast;
   const auto border = static_cast<std::uint32_t>(context.border.size());
-  FastStepWriter steps(chart, *edges);
-  const FastOutline outline{context.loop_sizes, context.counts, context.counts.faces};
+  FastStepWriter steps(chart, *edges, context.box.lo);
+  const auto isolated = static_cast<std::uint32_t>(steps.isolated().size());
   FastStream stream;
-  FastPlan plan = FastWalk(steps, outline).run();
-  stream.source_vertex = steps.guide().source_vertices();
-  stream.source_corner = steps.guide().source_faces();
+  FastPlan plan =
+      FastWalk(steps, FastOutline{context.loop_sizes, context.counts, isolated, context.counts.faces}).run();
+  stream.source_vertex = steps.source_vertices();
+  stream.source_corner = steps.source_faces();
 
   std::vector<FastPosition> positions;
   for (const std::uint32_t v : stream.source_vertex) {
@@ -28,14 +30,14 @@ std::optional<FastStream> encode_fast(const Chart& chart, const FastContext& con
     positions.push_back(fast_position(chart.positions[v]));
   }
   const bool wide = needs_wide_sums(context.box, context.border);
-  const auto residuals = misses(plan, border, positions, context.box.lo, context.tables->fast.weights(), wide);
+  const auto residuals = misses(plan, border, positions, tables.weights(), wide);
 
   const Buffer side = steps.finish_side();
+  put_varint(stream.bytes, isolated);
   put_varint(stream.bytes, steps.joins());
   put_varint(stream.bytes, side.size());
-  stream.bytes.insert(stream.bytes.end(), side.begin(), side.end());
-  for (const Buffer& part :
-       {steps.finish_symbols(context.tables->fast.step_tables()), encode_residuals(plan, border, residuals)})
+  for (const Buffer& part : {side, steps.finish_degrees(tables.step_tables()),
+                             encode_residuals(plan, border, residuals, tables.miss_tables())})
     stream.bytes.insert(stream.bytes.end(), part.begin(), part.end());
   stream.coded.faces = std::move(plan.faces);
   return stream;
@@ -45,7 +47,7 @@ std::optional<FastStream> encode_fast(const Chart& chart, const FastContext& con
 
 namespace {
 
-/// A vertex takes more than 1/16 bit (FastScales leaves no number for free), a face belongs to a vertex or a join.
+/// A vertex takes more than 1/32 bit (no symbol takes all of its distribution), a face belongs to a vertex or a join.
 void check_plausible(const ByteReader& reader, const FastContext& context, std::uint64_t joins) {
   const std::uint64_t most = 256 * (std::uint64_t{reader.rest().size()} + 64);
   const std::uint64_t vertices = context.border.size() + context.counts.inner_vertices;
@@ -53,46 +55,33 @@ void check_plausible(const ByteReader& reader, const FastContext& context, std::
   if (context.counts.faces > 2 * (vertices + joins)) reader.fail("declares more faces than it can have");
 }
 
-std::vector<LatticePoint> checked_positions(const std::vector<FastPosition>& positions, std::uint32_t border,
-                                            const LatticeBox& box) {
-  std::vector<LatticePoint> points(positions.size());
-  Int4 low{box.hi.x, box.hi.y, box.hi.z, 0}, high{box.lo.x, box.lo.y, box.lo.z, 0};
-  for (std::size_t v = 0; v < points.size(); ++v) {
-    const Int4 p = std::bit_cast<Int4>(positions[v]);
-    points[v] = {p[0], p[1], p[2]};
-    if (v < border) continue;
-    low = p < low ? p : low;
-    high = p > high ? p : high;
-  }
-  for (int a = 0; a < 3 && points.size() > border; ++a)
-    if (low[a] < box.lo[a] || high[a] > box.hi[a])
-      throw Error(Errc::corrupt, "a chart's vertex lies outside of the chart's range");
-  return points;
-}
-
 }  // namespace
 
 FastChart decode_fast(Bytes bytes, const FastContext& context) {
   ByteReader reader(bytes, "chart's stream");
+  const FastTables& tables = context.tables->fast;
   const auto border = static_cast<std::uint32_t>(context.border.size());
-  const std::uint32_t joins = reader.varint_up_to(kMaxFastJoins);
+  const std::uint32_t inner = context.counts.inner_vertices;
+  const std::uint32_t isolated = reader.varint_up_to(inner), joins = reader.varint_up_to(kMaxFastJoins);
   check_plausible(reader, context, joins);
   const Bytes side = reader.take(reader.varint_up_to(~std::uint32_t{0}));
-  const RansDecoder state(reader.fixed32());
-  FastStepReader steps(side, state, WordReader(reader.rest()), context.tables->fast.step_tables());
-  FastPlan plan = FastWalk(steps, FastOutline{context.loop_sizes, context.counts, joins}).run();
+  const std::vector<std::uint8_t> symbols =
+      take_degrees(reader, border, inner - isolated + joins, tables.step_tables());
+  FastStepReader steps(side, symbols, context.box.lo);
+  FastPlan plan = FastWalk(steps, FastOutline{context.loop_sizes, context.counts, isolated, joins}).run();
   if (plan.joins != joins) reader.fail("has fewer joins than it declares");
-  (void)reader.take(steps.finish());
+  steps.finish();
 
   FastChart chart;
-  chart.connectivity_cost = 2048 * std::uint64_t{bytes.size() - reader.rest().size()};
-  chart.geometry_cost = 2048 * std::uint64_t{reader.rest().size()};
-  const auto residuals = decode_residuals(reader.rest(), plan, border);
-  std::vector<FastPosition> positions(border + plan.places.size());
+  chart.geometry_cost = 2048 * std::uint64_t{reader.rest().size()} + steps.free_cost();
+  chart.connectivity_cost = 2048 * std::uint64_t{bytes.size()} - chart.geometry_cost;
+  ResidualTokens misses = decode_tokens(reader.rest(), plan, border, tables.miss_tables());
+  RawArray<FastPosition> positions(border + plan.places.size());
   for (std::uint32_t v = 0; v < border; ++v) positions[v] = fast_position(context.border[v]);
-  place_all(plan, border, residuals, context.box.lo, context.tables->fast.weights(),
-            needs_wide_sums(context.box, context.border), positions);
-  chart.positions = checked_positions(positions, border, context.box);
+  place_all(plan, border, misses, steps.free_points(), tables.weights(), needs_wide_sums(context.box, context.border),
+            positions);
+  finish_raw_bits(misses);
+  chart.positions = checked_points(positions, border, context.box);
   chart.faces = std::move(plan.faces);
   return chart;
 }

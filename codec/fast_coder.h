@@ -11,10 +11,10 @@
 
 /// The fast profile: connectivity first, then all misses, then all positions, each in a loop of its own.
 ///
-///   fast   = joins:varint side_size:varint side state:4 word* residuals
+///   fast   = isolated:varint joins:varint side_size:varint side degrees residuals
 ///
-/// side: large degrees and joins (fast_steps.h), of an adaptive range coder; state and words: the degrees; residuals:
-/// fast_residuals.h.
+/// side: large degrees, joins, and vertices without neighbours, of an adaptive range coder; degrees: fast_steps.h;
+/// residuals: fast_residuals.h.
 namespace ramcdb::codec {
 
 struct FastContext {

@@ -5,21 +5,21 @@
 #include <vector>
 
 #include "codec/dense_surface.h"
+#include "codec/raw_array.h"
 #include "ramcdb/chart.h"
 
 namespace ramcdb::codec {
 
 /// Around a new vertex, as connectivity knows it: the face (before, pivot, new) and what lies next to it.
 struct FastPlace {
-  std::uint32_t pivot = 0;
+  std::uint32_t pivot;
   /// before, next, behind the edge before-pivot, behind pivot-next, the vertex before `before`, behind that edge.
   /// Behind an edge of the border there is nothing; the vertex that it starts from stands for that.
-  std::array<std::uint32_t, 6> around{};
-  std::uint16_t predictor = 0;  ///< class of weights, below kFastPredictors
-  std::uint16_t trust = 0;      ///< how many parallelograms there are, 0 to 3; kFastFree: no neighbours at all
+  std::array<std::uint32_t, 6> around;
+  std::uint32_t predictor;  ///< class of weights, below kFastPredictors; kFreePlace: there are no neighbours
 };
 
-inline constexpr std::uint16_t kFastFree = 4;
+inline constexpr std::uint32_t kFreePlace = ~std::uint32_t{0};
 
 /// No chart splits more corners.
 inline constexpr std::uint32_t kMaxFastJoins = 1u << 20;
@@ -28,19 +28,18 @@ inline constexpr std::uint32_t kMaxFastJoins = 1u << 20;
 /// to lie. Vertex border + i has place i.
 struct FastPlan {
   std::vector<Triangle> faces;
-  std::vector<FastPlace> places;
+  RawArray<FastPlace> places;
   std::uint32_t joins = 0;
 };
 
 /// A node of the front: a corner of the surface that is still open, between the edges to prev and to next.
 struct FastNode {
-  std::uint32_t vertex = 0;
-  std::uint32_t prev = 0;
-  std::uint32_t next = 0;
-  std::uint32_t behind = 0;               ///< third vertex of the known face at the edge to next; without one, `vertex`
-  std::uint32_t has_face = 0;             ///< whether there is one: 0 or 1
-  std::uint32_t open = 0;                 ///< faces that the corner still takes; 0: the node has left the front
-  std::array<std::uint32_t, 2> unused{};  ///< so that nodes lie at multiples of 32 bytes
+  std::uint32_t vertex;
+  std::uint32_t behind;  ///< third vertex of the known face at the edge to next; without one, `vertex`
+  FastNode* prev;
+  FastNode* next;
+  std::uint32_t open;      ///< faces that the corner still takes; 0: the node has left the front
+  std::uint32_t has_face;  ///< whether there is one behind: 0 or 1
 };
 
 }  // namespace ramcdb::codec

@@ -27,13 +27,18 @@ using FastPosition = Unsigned4;
 /// Whether positions within `box` and `border` may be too far apart for sums of 32 bits.
 [[nodiscard]] bool needs_wide_sums(const LatticeBox& box, std::span<const LatticePoint> border);
 
-/// How far the guesses for all places miss `positions`. `origin`: what a vertex without any before it is guessed at.
+/// How far the guesses for all places miss `positions`; 0 for free places.
 [[nodiscard]] std::vector<FastResidual> misses(const FastPlan& plan, std::uint32_t border,
-                                               const std::vector<FastPosition>& positions, LatticePoint origin,
-                                               const FastWeights& weights, bool wide);
+                                               std::span<const FastPosition> positions, const ReadyWeights& weights,
+                                               bool wide);
 
-/// The other way round: completes `positions`, of which the border is known.
-void place_all(const FastPlan& plan, std::uint32_t border, const std::vector<FastResidual>& residuals,
-               LatticePoint origin, const FastWeights& weights, bool wide, std::vector<FastPosition>& positions);
+/// The other way round: completes `positions`, of which the border is known, and takes the raw bits of `misses`.
+/// `free`: one point for each free place.
+void place_all(const FastPlan& plan, std::uint32_t border, ResidualTokens& misses, std::span<const LatticePoint> free,
+               const ReadyWeights& weights, bool wide, RawArray<FastPosition>& positions);
+
+/// The same as plain points. Throws corrupt when an inner vertex lies outside of `box`.
+[[nodiscard]] std::vector<LatticePoint> checked_points(const RawArray<FastPosition>& positions, std::uint32_t border,
+                                                       const LatticeBox& box);
 
 }  // namespace ramcdb::codec

@@ -39,4 +39,23 @@ std::array<std::uint16_t, RansTable::kMostSymbols> rans_frequencies(std::span<co
   return frequencies;
 }
 
+void push_run(std::span<RansEncoder> states, const RansTable& table, std::span<const std::uint8_t> symbols,
+              std::vector<std::uint16_t>& words) {
+  for (std::size_t i = symbols.size(); i-- > 0;) states[i % states.size()].push(table, symbols[i], words);
+}
+
+void pop_run(std::span<RansDecoder> states, const RansTable& table, WordReader& words,
+             std::span<std::uint8_t> symbols) {
+  std::size_t i = 0;
+  if (states.size() == kRansLanes) {
+    std::array<RansDecoder, kRansLanes> lanes;  // so that they may live in registers
+    std::copy_n(states.begin(), kRansLanes, lanes.begin());
+    for (; i + kRansLanes <= symbols.size() && words.has(kRansLanes); i += kRansLanes)
+      for (std::size_t lane = 0; lane < kRansLanes; ++lane)
+        symbols[i + lane] = static_cast<std::uint8_t>(lanes[lane].pop_sure(table, words));
+    std::copy_n(lanes.begin(), kRansLanes, states.begin());
+  }
+  for (; i < symbols.size(); ++i) symbols[i] = static_cast<std::uint8_t>(states[i % states.size()].pop(table, words));
+}
+
 }  // namespace ramcdb::codec

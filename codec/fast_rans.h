@@ -82,25 +82,43 @@ inline std::uint64_t load_le64(const std::uint8_t* from) {
 /// Words of 16 bits, lowest byte first. Past the end come zeros; who reads there is found out by over().
 class WordReader {
  public:
-  explicit WordReader(Bytes bytes) : bytes_(bytes) {}
+  WordReader() = default;
+  explicit WordReader(Bytes bytes) : begin_(bytes.data()), at_(begin_), end_(begin_ + bytes.size()) {}
 
   std::uint32_t take() {
-    const std::uint32_t word = at_ + 2 <= bytes_.size() ? peek() : 0;
-    at_ += 2;
-    return word;
+    if (has(1)) {
+      const std::uint32_t word = peek();
+      skip(1);
+      return word;
+    }
+    over_ = true;
+    return 0;
   }
   /// Whether `count` words are there for sure, so that peek() and skip() will do.
-  [[nodiscard]] bool has(std::size_t count) const { return at_ + 2 * count <= bytes_.size(); }
-  [[nodiscard]] std::uint32_t peek() const { return load_le16(bytes_.data() + at_); }
+  [[nodiscard]] bool has(std::ptrdiff_t count) const { return end_ - at_ >= 2 * count; }
+  [[nodiscard]] std::uint32_t peek() const { return load_le16(at_); }
   void skip(std::size_t count) { at_ += 2 * count; }
 
-  [[nodiscard]] bool over() const { return at_ > bytes_.size(); }
-  [[nodiscard]] std::size_t position() const { return at_; }
+  [[nodiscard]] bool over() const { return over_; }
+  [[nodiscard]] std::size_t position() const { return static_cast<std::size_t>(at_ - begin_); }
 
  private:
-  Bytes bytes_;
-  std::size_t at_ = 0;
+  const std::uint8_t* begin_ = nullptr;
+  const std::uint8_t* at_ = nullptr;
+  const std::uint8_t* end_ = nullptr;
+  bool over_ = false;
 };
+
+/// States that take turns, so that a processor works at all of them at once; so many symbols are worth their bytes.
+inline constexpr std::size_t kRansLanes = 4;
+[[nodiscard]] inline std::size_t rans_lanes(std::size_t symbols) { return symbols < 512 ? 1 : kRansLanes; }
+
+inline void put_words(Buffer& out, std::span<const std::uint16_t> last_first) {
+  for (std::size_t i = last_first.size(); i-- > 0;) {
+    out.push_back(static_cast<std::uint8_t>(last_first[i]));
+    out.push_back(static_cast<std::uint8_t>(last_first[i] >> 8));
+  }
+}
 
 class RansDecoder {
  public:
@@ -116,10 +134,9 @@ class RansDecoder {
   /// The same without a branch: whether a word is needed nobody can guess. REQUIRES: words.has(1).
   std::uint32_t pop_sure(const RansTable& table, WordReader& words) {
     const std::uint32_t symbol = step(table);
-    const bool low = state_ < kRansLow;
-    const std::uint32_t refilled = state_ << 16 | words.peek();
-    state_ = low ? refilled : state_;
-    words.skip(low);
+    const std::uint32_t all_if_low = 0u - static_cast<std::uint32_t>(state_ < kRansLow);
+    state_ = state_ << (all_if_low & 16) | (words.peek() & all_if_low);
+    words.skip(all_if_low & 1);
     return symbol;
   }
   [[nodiscard]] bool at_end() const { return state_ == kRansLow; }
@@ -133,5 +150,10 @@ class RansDecoder {
 
   std::uint32_t state_ = kRansLow;
 };
+
+/// Symbols of one distribution, the first with the first state. REQUIRES: states.size() is 1 or kRansLanes.
+void push_run(std::span<RansEncoder> states, const RansTable& table, std::span<const std::uint8_t> symbols,
+              std::vector<std::uint16_t>& words);
+void pop_run(std::span<RansDecoder> states, const RansTable& table, WordReader& words, std::span<std::uint8_t> symbols);
 
 }  // namespace ramcdb::codec

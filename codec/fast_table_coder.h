@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "codec/fast_scales.h"
 #include "codec/fast_tables.h"
 #include "codec/range_coder.h"
 #include "ramcdb/error.h"
@@ -13,9 +14,10 @@ namespace ramcdb::codec {
 /// The fast profile's part of a table blob, for both directions: the encoder is given the tables, the decoder the
 /// built-in ones and fills in those that differ.
 ///
-///   fast_part = context{kStepContexts} place{kFastPredictors}
+///   fast_part = context{kStepContexts} place{kFastPredictors} own:bit [ scale{kMissClasses} ]
 ///   context   = own:bit [ difference{kStepSymbols - 1} ]     the last frequency follows from the others
 ///   place     = own:bit [ difference{6} ]
+///   scale     = difference
 ///
 /// Differences are signed numbers, to the built-in ones; those at the same place among symbols or weights share a
 /// model. Throws invalid_argument for tables that cannot code every chart when encoding, corrupt when decoding.
@@ -24,11 +26,15 @@ class FastTablePart {
  public:
   explicit FastTablePart(Coder& coder) : coder_(coder) {}
 
-  void code(StepFrequencies& steps, FastWeights& weights) {
+  void code(FastNumbers& numbers) {
+    const FastNumbers built_in = FastTables().numbers();
     for (std::size_t c = 0; c < kStepContexts; ++c)
-      if (coder_.code(own_context_, steps[c] != built_in_.steps()[c])) code_context(steps[c], built_in_.steps()[c]);
+      if (coder_.code(own_context_, numbers.steps[c] != built_in.steps[c]))
+        code_context(numbers.steps[c], built_in.steps[c]);
     for (std::size_t c = 0; c < kFastPredictors; ++c)
-      if (coder_.code(own_place_, weights[c] != built_in_.weights()[c])) code_place(weights[c], built_in_.weights()[c]);
+      if (coder_.code(own_place_, numbers.weights[c] != built_in.weights[c]))
+        code_place(numbers.weights[c], built_in.weights[c]);
+    if (coder_.code(own_scales_, numbers.scales != built_in.scales)) code_scales(numbers.scales, built_in.scales);
   }
 
  private:
@@ -55,6 +61,12 @@ class FastTablePart {
     if (left != 0 || frequencies == known) refuse();
   }
 
+  void code_scales(MissScales& scales, const MissScales& known) {
+    for (std::size_t c = 0; c < kMissClasses; ++c)
+      scales[c] = static_cast<std::uint8_t>(code_near(scale_, scales[c], known[c], 0, int{kScales} - 1));
+    if (scales == known) refuse();
+  }
+
   int code_near(AdaptiveSigned& model, int value, int known, int lowest, int highest) {
     const std::int64_t coded = std::int64_t{known} + model.code(coder_, value - known);
     if (coded < lowest || coded > highest) refuse();
@@ -67,10 +79,10 @@ class FastTablePart {
   }
 
   Coder& coder_;
-  FastTables built_in_;
-  AdaptiveBit own_context_, own_place_;
+  AdaptiveBit own_context_, own_place_, own_scales_;
   std::array<AdaptiveSigned, kStepSymbols> frequency_;
   std::array<AdaptiveSigned, 6> weight_;
+  AdaptiveSigned scale_;
 };
 
 }  // namespace ramcdb::codec

@@ -3,33 +3,30 @@
 #include <xxhash.h>
 
 #include "codec/built_in_fast.h"
+#include "codec/fast_scales.h"
 #include "ramcdb/bytes.h"
 
 namespace ramcdb::codec {
 
-FastStepTables::FastStepTables(const StepFrequencies& frequencies) {
-  tables_.reserve(frequencies.size());
-  for (const auto& of_context : frequencies) tables_.emplace_back(of_context);
-}
-
 namespace {
 
-std::uint64_t digest_of(const StepFrequencies& steps, const FastWeights& weights) {
+std::uint64_t digest_of(const FastNumbers& numbers) {
   Buffer bytes;
   const auto put = [&](unsigned number) {
     bytes.push_back(static_cast<std::uint8_t>(number));
     bytes.push_back(static_cast<std::uint8_t>(number >> 8));
   };
-  for (const auto& context : steps)
+  for (const auto& context : numbers.steps)
     for (const std::uint16_t frequency : context) put(frequency);
-  for (const PlaceWeights& of_class : weights)
+  for (const PlaceWeights& of_class : numbers.weights)
     for (const std::int16_t weight : of_class) put(static_cast<std::uint16_t>(weight));
+  for (const std::uint8_t scale : numbers.scales) put(scale);
   return XXH3_64bits(bytes.data(), bytes.size());
 }
 
 /// The built-in tables are many, and all alike.
 const FastTables& built_in() {
-  static const FastTables tables(kBuiltInSteps, kBuiltInPlaceWeights);
+  static const FastTables tables({kBuiltInSteps, kBuiltInPlaceWeights, kBuiltInMissScales});
   return tables;
 }
 
@@ -37,10 +34,14 @@ const FastTables& built_in() {
 
 FastTables::FastTables() : FastTables(built_in()) {}
 
-FastTables::FastTables(const StepFrequencies& steps, const FastWeights& weights)
-    : steps_(steps),
-      weights_(weights),
-      ready_(std::make_shared<const FastStepTables>(steps)),
-      digest_(digest_of(steps, weights)) {}
+FastTables::FastTables(const FastNumbers& numbers) : numbers_(numbers), digest_(digest_of(numbers)) {
+  auto ready = std::make_shared<Ready>();
+  for (std::size_t c = 0; c < kStepContexts; ++c) ready->steps[c] = RansTable(numbers.steps[c]);
+  for (std::size_t c = 0; c < kFastPredictors; ++c)
+    std::copy(numbers.weights[c].begin(), numbers.weights[c].end(), ready->weights[c].begin());
+  for (std::uint32_t sum = 0; sum < ready->misses.size(); ++sum)
+    ready->misses[sum] = &scale_tables()[numbers.scales[miss_class(sum)]];
+  ready_ = std::move(ready);
+}
 
 }  // namespace ramcdb::codec

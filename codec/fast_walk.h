@@ -1,11 +1,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "codec/fast_plan.h"
+#include "codec/fast_vector.h"
 
 namespace ramcdb::codec {
 
@@ -13,7 +15,8 @@ namespace ramcdb::codec {
 struct FastOutline {
   std::span<const std::uint32_t> loop_sizes;
   ChartCounts counts;
-  std::uint32_t joins = 0;  ///< corners of the front that are split, at most: nodes beyond one per vertex
+  std::uint32_t isolated = 0;  ///< vertices without faces
+  std::uint32_t joins = 0;     ///< corners of the front that are split, at most: nodes beyond one per vertex
 };
 
 /// The walk over the connectivity of a chart, from the border inwards, for encoder and decoder alike (Source decides
@@ -38,10 +41,10 @@ class FastWalk {
  public:
   FastWalk(Source& source, const FastOutline& outline) : source_(source), outline_(outline) {
     for (const std::uint32_t size : outline.loop_sizes) border_ += size;
-    max_vertices_ = border_ + outline.counts.inner_vertices;
-    nodes_.resize(std::size_t{max_vertices_} + outline.joins);
+    max_vertices_ = border_ + outline.counts.inner_vertices - outline.isolated;
+    nodes_ = RawArray<FastNode>(std::size_t{max_vertices_} + outline.joins);
     plan_.faces.resize(outline.counts.faces);
-    plan_.places.resize(outline.counts.inner_vertices);
+    plan_.places = RawArray<FastPlace>(outline.counts.inner_vertices);
   }
 
   /// Throws corrupt when the source describes no chart of these counts.
@@ -52,6 +55,8 @@ class FastWalk {
       begin_at_seed();
       walk_loops();
     }
+    if (vertices_ != max_vertices_) refuse("has fewer vertices than it declares");
+    max_vertices_ += outline_.isolated;
     while (vertices_ < max_vertices_) source_.isolated_placed(add_free_vertex());
     plan_.joins = joins_;
     return std::move(plan_);
@@ -66,18 +71,20 @@ class FastWalk {
     std::uint32_t first = 0;
     for (const std::uint32_t size : outline_.loop_sizes) {
       for (std::uint32_t v = first; v < first + size; ++v) add_node(v, v, 0, source_.border_degree(v));
-      for (std::uint32_t i = 0; i < size; ++i) link(first + i, first + (i + 1) % size);
+      link_ring(first, size);
       first += size;
     }
     vertices_ = first;
     for (std::uint32_t end = first, i = static_cast<std::uint32_t>(outline_.loop_sizes.size()); i-- > 0;)
-      loops_.push_back(end -= outline_.loop_sizes[i]);
+      loops_.push_back(&nodes_[end -= outline_.loop_sizes[i]]);
   }
 
   void begin_at_seed() {
     const std::uint32_t first_vertex = vertices_, first = used_;
     for (int i = 0; i < 3; ++i) (void)add_free_vertex();
-    add_face(first_vertex, first_vertex + 1, first_vertex + 2);
+    Cursor at = cursor();
+    add_face(at, first_vertex, first_vertex + 1, first_vertex + 2);
+    faces_ = at.face;
     source_.seed_placed(first_vertex, first);
     // The front runs around the seed the other way: a, c, b.
     for (const std::uint32_t i : {0u, 2u, 1u}) {
@@ -87,158 +94,179 @@ class FastWalk {
     nodes_[first].behind = first_vertex + 1;
     nodes_[first + 1].behind = first_vertex;
     nodes_[first + 2].behind = first_vertex + 2;
-    for (std::uint32_t i = 0; i < 3; ++i) link(first + i, first + (i + 1) % 3);
-    loops_.push_back(first);
+    link_ring(first, 3);
+    loops_.push_back(&nodes_[first]);
   }
 
   void walk_loops() {
     while (!loops_.empty()) {
-      const std::uint32_t node = loops_.back();
+      FastNode* const node = loops_.back();
       loops_.pop_back();
-      if (nodes_[node].open > 0) walk_loop(node);
+      if (node->open > 0) walk_loop(node);
     }
   }
 
-  void walk_loop(std::uint32_t pivot) {
+  /// What the loop over faces counts in registers.
+  struct Cursor {
+    FastPlace* places = nullptr;
+    Triangle* faces = nullptr;
+    std::uint32_t face = 0;
+    std::uint32_t last_face = 0;
+    std::uint32_t vertex = 0;
+    FastNode* new_node = nullptr;
+  };
+
+  [[nodiscard]] Cursor cursor() {
+    return {plan_.places.data(), plan_.faces.data(), faces_, outline_.counts.faces, vertices_, nodes_.data() + used_};
+  }
+  void keep(const Cursor& at) {
+    faces_ = at.face;
+    vertices_ = at.vertex;
+    used_ = number_of(at.new_node);
+  }
+
+  void walk_loop(FastNode* pivot) {
+    Cursor at = cursor();
     for (;;) {
-      const FastNode& at = nodes_[pivot];
-      const std::uint32_t before = at.prev, next = at.next;
-      if (at.open == 1) {
-        if (!close(pivot)) return;
+      FastNode *const before = pivot->prev, *const next = pivot->next;
+      if (pivot->open == 1) {
+        if (!close(at, pivot, before, next)) break;
         pivot = next_pivot(next);
-      } else if (nodes_[before].open == 1) {
-        if (!close(before)) return;
-      } else if (nodes_[next].open == 1) {
-        if (!close(next)) return;
+      } else if (before->open == 1) {
+        if (!close(at, before, before->prev, pivot)) break;
+      } else if (next->open == 1) {
+        if (!close(at, next, pivot, next->next)) break;
+      } else if (const std::uint32_t degree = source_.step_degree(number_of(before)); degree > 0) [[likely]] {
+        place_vertex(at, *before, *pivot, degree);
       } else {
-        take_step(before, pivot);
+        keep(at);
+        join(*before, *pivot);
+        at = cursor();
       }
     }
+    keep(at);
   }
 
-  /// The corner among the next five that takes the fewest faces.
-  [[nodiscard]] std::uint32_t next_pivot(std::uint32_t node) const {
-    std::uint32_t best = node;
-    for (int i = 0; i < 4; ++i) {
-      node = nodes_[node].next;
-      if (nodes_[node].open < nodes_[best].open) best = node;
+  /// The corner among the next four that takes the fewest faces; of equal ones the first.
+  [[nodiscard]] static RAMCDB_INLINE FastNode* next_pivot(FastNode* node) {
+    std::array<FastNode*, 4> nodes;
+    std::uint32_t fewest = ~std::uint32_t{0};  // no branches: nobody could guess them
+    for (std::uint32_t i = 0; i < nodes.size(); ++i, node = node->next) {
+      nodes[i] = node;
+      fewest = std::min(fewest, 8 * node->open + i);
     }
-    return best;
+    return nodes[fewest % 8];
   }
 
   /// The last face of a corner. False when that was the last of the loop, too.
-  bool close(std::uint32_t corner) {
-    FastNode& at = nodes_[corner];
-    FastNode &before = nodes_[at.prev], &next = nodes_[at.next];
-    add_face(before.vertex, at.vertex, next.vertex);
-    source_.closed(at.prev);
-    at.open = 0;
-    set_behind(before, at.vertex);
-    const std::uint32_t from = at.prev, to = at.next;
-    link(from, to);
-    --before.open;
-    --next.open;
-    if (before.open == 0 || next.open == 0 || next.next == from) return !end_loop(from, to);
+  RAMCDB_INLINE bool close(Cursor& at, FastNode* corner, FastNode* before, FastNode* next) {
+    add_face(at, before->vertex, corner->vertex, next->vertex);
+    source_.closed(number_of(before));
+    corner->open = 0;
+    before->behind = corner->vertex;
+    before->has_face = 1;
+    before->next = next;
+    next->prev = before;
+    const std::uint32_t open_before = --before->open, open_next = --next->open;
+    if (open_before == 0 || open_next == 0 || next->next == before) [[unlikely]]
+      return !end_loop(*before, *next);
     return true;
   }
 
   /// Two corners form a loop just when they take no face more. Anything else only hostile bytes describe.
-  bool end_loop(std::uint32_t a, std::uint32_t b) {
-    if (nodes_[a].open != 0 || nodes_[b].open != 0 || nodes_[a].next != b || nodes_[b].next != a)
+  static bool end_loop(const FastNode& a, const FastNode& b) {
+    if (a.open != 0 || b.open != 0 || a.next != &b || b.next != &a)
       refuse("has a corner with more or fewer faces than it says");
     return true;
   }
 
-  /// The face at the edge from `before` to the pivot, with a third vertex that is new or joined.
-  void take_step(std::uint32_t before, std::uint32_t pivot) {
-    const std::uint32_t degree = source_.step_degree(nodes_, before, pivot);
-    if (degree == 0) return join(before, pivot);
-    if (vertices_ == max_vertices_) refuse("has more vertices than it declares");
-    describe_place(nodes_[before], nodes_[pivot], nodes_[nodes_[pivot].next], nodes_[nodes_[before].prev], degree);
-    const std::uint32_t vertex = vertices_++;
-    add_face(nodes_[before].vertex, nodes_[pivot].vertex, vertex);
-    const std::uint32_t node = add_node(vertex, nodes_[before].vertex, 1, degree - 1);
-    set_behind(nodes_[before], nodes_[pivot].vertex);
-    link(before, node);
-    link(node, pivot);
-    --nodes_[before].open;
-    --nodes_[pivot].open;
-    source_.vertex_placed(before, node, vertex);
+  /// The face at the edge from `before` to the pivot, with a third vertex that is new.
+  RAMCDB_INLINE void place_vertex(Cursor& at, FastNode& before, FastNode& pivot, std::uint32_t degree) {
+    if (at.vertex == max_vertices_) [[unlikely]]
+      refuse("has more vertices than it declares");
+    at.places[at.vertex - border_] = place_of(before, pivot, degree);
+    add_face(at, before.vertex, pivot.vertex, at.vertex);
+    FastNode* const node = at.new_node++;
+    *node = {at.vertex, before.vertex, &before, &pivot, degree - 1, 1};
+    before.behind = pivot.vertex;
+    before.has_face = 1;
+    before.next = pivot.prev = node;
+    --before.open;
+    --pivot.open;
+    source_.vertex_placed(number_of(&before), number_of(node), at.vertex++);
   }
 
-  /// The corner `there` is split: into what lies between pivot's side and the face, a new node, and the rest.
-  void join(std::uint32_t before, std::uint32_t pivot) {
-    if (joins_++ == outline_.joins) refuse("has more joins than it declares");
-    const auto [there, open_here] = source_.join_target(nodes_, used_, before, pivot);
-    const std::uint32_t total = nodes_[there].open;
-    if (there == pivot || there == before || there == nodes_[pivot].next || there == nodes_[before].prev ||
-        open_here < 1 || std::uint64_t{open_here} + 2 > total)
-      refuse("joins what cannot be joined");
-    const std::uint32_t vertex = nodes_[there].vertex;
-    add_face(nodes_[before].vertex, nodes_[pivot].vertex, vertex);
-    const std::uint32_t behind_there = nodes_[there].prev;
-    const std::uint32_t here = add_node(vertex, nodes_[before].vertex, 1, open_here);
-    nodes_[there].open = total - 1 - open_here;
-    set_behind(nodes_[before], nodes_[pivot].vertex);
-    link(behind_there, here);
-    link(here, pivot);
-    link(before, there);
-    --nodes_[before].open;
-    --nodes_[pivot].open;
-    source_.joined(before, here);
-    loops_.push_back(there);
-  }
-
-  void describe_place(const FastNode& p, const FastNode& v, const FastNode& n, const FastNode& pp,
-                      std::uint32_t degree) {
-    FastPlace& place = plan_.places[vertices_ - border_];
-    place.pivot = v.vertex;
-    place.around = {p.vertex, n.vertex, p.behind, v.behind, pp.vertex, pp.behind};
+  static RAMCDB_INLINE FastPlace place_of(const FastNode& p, const FastNode& v, std::uint32_t degree) {
+    const FastNode &n = *v.next, &pp = *p.prev;
     const std::uint32_t open_v = std::min(v.open, 4u) - 2, open_p = std::min(p.open, 4u) - 2;
     const std::uint32_t size = std::clamp(degree, 4u, 7u) - 4;
     const std::uint32_t flags = 4 * p.has_face + 2 * v.has_face + pp.has_face;
-    place.predictor = static_cast<std::uint16_t>(((open_v * 3 + open_p) * 4 + size) * 8 + flags);
-    place.trust = static_cast<std::uint16_t>(p.has_face + (v.has_face & (v.open == 2)) + (pp.has_face & (p.open == 2)));
+    return {v.vertex,
+            {p.vertex, n.vertex, p.behind, v.behind, pp.vertex, pp.behind},
+            ((open_v * 3 + open_p) * 4 + size) * 8 + flags};
+  }
+
+  /// The corner `there` is split: into what lies between pivot's side and the face, a new node, and the rest.
+  void join(FastNode& before, FastNode& pivot) {
+    if (joins_++ == outline_.joins) refuse("has more joins than it declares");
+    const auto [there, open_here] = source_.join_target(std::span(nodes_.data(), used_), before, pivot);
+    if (there == &pivot || there == &before || there == pivot.next || there == before.prev || open_here < 1 ||
+        std::uint64_t{open_here} + 2 > there->open)
+      refuse("joins what cannot be joined");
+    Cursor at = cursor();
+    add_face(at, before.vertex, pivot.vertex, there->vertex);
+    faces_ = at.face;
+    FastNode& here = add_node(there->vertex, before.vertex, 1, open_here);
+    there->open -= 1 + open_here;
+    before.behind = pivot.vertex;
+    before.has_face = 1;
+    link(*there->prev, here);
+    link(here, pivot);
+    link(before, *there);
+    --before.open;
+    --pivot.open;
+    source_.joined(number_of(&before), number_of(&here));
+    loops_.push_back(there);
   }
 
   /// A vertex without neighbours: of a seed, or isolated.
   std::uint32_t add_free_vertex() {
     if (vertices_ == max_vertices_) refuse("has more vertices than it declares");
-    FastPlace& place = plan_.places[vertices_ - border_];
-    place.pivot = vertices_ == 0 ? 0 : vertices_ - 1;
-    place.around.fill(place.pivot);
-    place.trust = kFastFree;
+    plan_.places[vertices_ - border_].predictor = kFreePlace;
     return vertices_++;
   }
 
-  void add_face(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    if (faces_ == plan_.faces.size()) refuse("has more faces than it declares");
-    if (a == b || b == c || c == a) refuse("has a face with a vertex twice");
-    plan_.faces[faces_++] = {a, b, c};
+  static RAMCDB_INLINE void add_face(Cursor& at, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    if (at.face == at.last_face) [[unlikely]]
+      refuse("has more faces than it declares");
+    if (a == b || b == c || c == a) [[unlikely]]
+      refuse("has a face with a vertex twice");
+    at.faces[at.face++] = {a, b, c};
   }
 
-  std::uint32_t add_node(std::uint32_t vertex, std::uint32_t behind, std::uint32_t has_face, std::uint32_t open) {
-    nodes_[used_] = {vertex, 0, 0, behind, has_face, open};
-    return used_++;
+  FastNode& add_node(std::uint32_t vertex, std::uint32_t behind, std::uint32_t has_face, std::uint32_t open) {
+    nodes_[used_] = {vertex, behind, nullptr, nullptr, open, has_face};
+    return nodes_[used_++];
+  }
+  [[nodiscard]] std::uint32_t number_of(const FastNode* node) const {
+    return static_cast<std::uint32_t>(node - nodes_.data());
   }
 
-  static void set_behind(FastNode& node, std::uint32_t vertex) {
-    node.behind = vertex;
-    node.has_face = 1;
+  static void link(FastNode& from, FastNode& to) {
+    from.next = &to;
+    to.prev = &from;
   }
-
-  void link(std::uint32_t from, std::uint32_t to) {
-    nodes_[from].next = to;
-    nodes_[to].prev = from;
+  void link_ring(std::uint32_t first, std::uint32_t size) {
+    for (std::uint32_t i = 0; i < size; ++i) link(nodes_[first + i], nodes_[first + (i + 1) % size]);
   }
 
   Source& source_;
   FastOutline outline_;
   FastPlan plan_;
-  std::vector<FastNode> nodes_;
-  std::vector<std::uint32_t> loops_;  ///< a node of each loop that waits, and some that have left
+  RawArray<FastNode> nodes_;
+  std::vector<FastNode*> loops_;  ///< a node of each loop that waits, and some that have left
   std::uint32_t border_ = 0;
-  std::uint32_t max_vertices_ = 0;
+  std::uint32_t max_vertices_ = 0;  ///< that have faces; at the end all
   std::uint32_t vertices_ = 0;
   std::uint32_t faces_ = 0;
   std::uint32_t joins_ = 0;

@@ -41,10 +41,9 @@ void code_tables(Coder& coder, CoderTables& tables) {
   const CoderTables built_in;
   code_classes(coder, tables.fan, built_in.fan);
   code_classes(coder, tables.plane, built_in.plane);
-  StepFrequencies steps = tables.fast.steps();
-  FastWeights weights = tables.fast.weights();
-  FastTablePart(coder).code(steps, weights);
-  if (!Coder::kEncodes) tables.fast = FastTables(steps, weights);
+  FastNumbers fast = tables.fast.numbers();
+  FastTablePart(coder).code(fast);
+  if (!Coder::kEncodes) tables.fast = FastTables(fast);
 }
 
 std::uint32_t check_of(const CoderTables& tables) {

