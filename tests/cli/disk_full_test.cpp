@@ -70,7 +70,7 @@ TEST_F(DiskFull, ImportOfAMeshThatDoesNotFit) {
 }
 
 TEST_F(DiskFull, CommitAfterCommitUntilNothingFits) {
-  const SmallDisk disk(path("disk"), "1m");
+  const SmallDisk disk(path("disk"), "500k");
   if (!disk.mounted()) GTEST_SKIP() << "no right to mount a small disk: " << disk.reason();
   const std::string repo = disk.path("r"), file = path("edited.ply");
   expect_done(run_ramcdb({"init", repo, "-q"}));
