@@ -163,10 +163,16 @@ bool keeps_order(const Chart& before, const codec::EncodedChart& after) {
   const codec::LayerOrder old_order(before), new_order(after.decoded);
   for (std::size_t i = 0; i < old_order.vertices().size(); ++i)
     if (after.source_vertex[new_order.vertices()[i]] != old_order.vertices()[i]) return false;
-  for (std::size_t i = 0; i < old_order.entries().size(); ++i) {
-    const std::uint32_t entry = new_order.entries()[i], corner = after.source_corner[entry / 3];
-    if (3 * (corner / 3) + (corner + entry) % 3 != old_order.entries()[i]) return false;
-  }
+  const auto source_of = [&](std::uint32_t corner) {
+    if (corner == codec::LayerOrder::kNone) return corner;
+    const std::uint32_t source = after.source_corner[corner / 3];
+    return 3 * (source / 3) + (source + corner) % 3;
+  };
+  for (std::size_t i = 0; i < old_order.entries().size(); ++i)
+    if (source_of(new_order.entries()[i]) != old_order.entries()[i]) return false;
+  // Where more than two faces meet at an edge, they are paired by number.
+  for (std::uint32_t corner = 0; corner < 3 * after.source_corner.size(); ++corner)
+    if (source_of(new_order.twin(corner)) != old_order.twin(source_of(corner))) return false;
   return true;
 }
 

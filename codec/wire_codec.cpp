@@ -134,7 +134,7 @@ class ResidualCoder {
   std::array<AdaptiveBit, 32> second_;
 };
 
-[[noreturn]] void corrupt(const char* what) {
+[[noreturn]] void corrupt_wires(const char* what) {
   throw Error(Errc::corrupt, std::string("wire blob: ") + what, {}, "run `ramcdb verify`");
 }
 
@@ -156,7 +156,7 @@ class WireGroupCoder {
 
   void run() {
     const std::uint32_t wires = wires_.code(coder_, static_cast<std::uint32_t>(group_.members_.size()));
-    if (wires == 0 || wires > kMostPoints) corrupt("no wires, or too many");
+    if (wires == 0 || wires > kMostPoints) corrupt_wires("no wires, or too many");
     const int expected = static_cast<int>(coder_.code_raw(Coder::kEncodes ? first_width() : 0, 5));
     ResidualCoder residuals(expected);
     for (std::uint32_t w = 0; w < wires; ++w) {
@@ -185,10 +185,10 @@ class WireGroupCoder {
 
   void code_head(WireGroup::Member& member) {
     const std::uint32_t skipped = skipped_.code(coder_, member.id.value - last_id_ - 1);
-    if (skipped >= ~std::uint32_t{0} - last_id_) corrupt("its ids do not ascend");
+    if (skipped >= ~std::uint32_t{0} - last_id_) corrupt_wires("its ids do not ascend");
     member.id = WireId(last_id_ += skipped + 1);
     const std::uint32_t count = points_.code(coder_, member.count - 1);
-    if (count >= kMostPoints - points_so_far_) corrupt("too many points");
+    if (count >= kMostPoints - points_so_far_) corrupt_wires("too many points");
     member.first = points_so_far_;
     member.count = count + 1;
     points_so_far_ += member.count;
@@ -242,11 +242,11 @@ std::vector<CodedWireGroup> encode_in_groups(std::span<const WireOfGroup> wires)
 }
 
 WireGroup::WireGroup(Bytes blob) {
-  if (blob.empty()) corrupt("no bytes");
-  if (blob[0] >> 4 == 0) corrupt("no known format");
+  if (blob.empty()) corrupt_wires("no bytes");
+  if (blob[0] >> 4 == 0) corrupt_wires("no known format");
   if (blob[0] >> 4 != kWireFormat)
     throw Error(Errc::unsupported_version, "wire blob: unknown format", {}, "use a newer ramcdb");
-  if (blob[0] & 15) corrupt("bits that mean nothing");
+  if (blob[0] & 15) corrupt_wires("bits that mean nothing");
   RangeDecoder decoder(blob.subspan(1));
   WireGroupCoder(decoder, *this).run();
   decoder.finish();
@@ -254,20 +254,20 @@ WireGroup::WireGroup(Bytes blob) {
 
 const WireGroup::Member& WireGroup::member(WireId id) const {
   const auto found = std::ranges::lower_bound(members_, id, {}, &Member::id);
-  if (found == members_.end() || found->id != id) corrupt("a wire is not in it");
+  if (found == members_.end() || found->id != id) corrupt_wires("a wire is not in it");
   return *found;
 }
 
 Wire WireGroup::wire(WireId id, LatticePoint begin, LatticePoint end, std::uint32_t inner_points) const {
   const Member& coded = member(id);
-  if (coded.count != inner_points) corrupt("a wire has another number of points");
+  if (coded.count != inner_points) corrupt_wires("a wire has another number of points");
   Wire wire{{begin}};
   for (std::uint32_t i = 0; i < inner_points; ++i) {
     const LatticePoint expected = predict(coded.linear, wire.points, end, inner_points - i);
     LatticePoint p;
     for (int a = 0; a < 3; ++a) {
       const std::int64_t value = std::int64_t{expected[a]} + residuals_[coded.first + i][static_cast<std::size_t>(a)];
-      if (std::abs(value) > kMaxLatticeCoordinate) corrupt("a point leaves the lattice");
+      if (std::abs(value) > kMaxLatticeCoordinate) corrupt_wires("a point leaves the lattice");
       p[a] = static_cast<std::int32_t>(value);
     }
     wire.points.push_back(p);
