@@ -10,6 +10,9 @@
 
 namespace ramcdb::chartify {
 
+/// No face, chart, vertex or whatever else is counted from 0.
+inline constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
 /// A triangle mesh on the lattice, as it is: open, non-manifold, with degenerate and duplicate faces, isolated
 /// vertices. Faces index positions.
 struct IndexedMesh {

@@ -7,10 +7,18 @@
 #include "chartify/partition.h"
 
 namespace ramcdb::chartify {
-CutSurface::CutSurface(const IndexedMesh& mesh, const std::vector<std::uint32_t>& chart_of_face)
-    : mesh_(mesh), edges_(group_half_edges(mesh)), mate_(find_twins(mesh, edges_)) {
+
+CutSurface::CutSurface(const IndexedMesh& mesh, const std::vector<std::uint32_t>& chart_of_face,
+                       std::span<const FixedWire> fixed, std::span<const std::uint32_t> corners)
+    : mesh_(mesh),
+      corners_(corners),
+      edges_(group_half_edges(mesh)),
+      fixed_(mesh, edges_, fixed),
+      mate_(find_twins(mesh, edges_)) {
   for (HalfEdge h = 0; h < mate_.size(); ++h)
-    if (mate_[h] != kNoTwin && chart_of_face[face_of(h)] != chart_of_face[face_of(mate_[h])]) cut(h);
+    if (mate_[h] != kNoTwin &&
+        (chart_of_face[face_of(h)] != chart_of_face[face_of(mate_[h])] || fixed_.contains(edge_of(h))))
+      cut(h);
   for (std::size_t cuts = 1; cuts > 0;) {
     find_fans();
     cuts = open_fans_of_split_vertices();
@@ -54,6 +62,7 @@ HalfEdge CutSurface::next_on_border(HalfEdge h) const {
 
 std::size_t CutSurface::open_fans_of_split_vertices() {
   std::vector<std::uint8_t> fans_at(mesh_.positions.size(), 0);
+  for (const std::uint32_t v : corners_) fans_at[v] = 1;
   for (const Fan& fan : fans_) {
     std::uint8_t& count = fans_at[start_of(fan.first)];
     count = count == 0 ? 1 : 2;

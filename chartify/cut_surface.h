@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "chartify/fixed_wires.h"
 #include "chartify/half_edge_twins.h"
 
 namespace ramcdb::chartify {
@@ -14,7 +16,10 @@ class CutSurface {
  public:
   /// Cuts every edge that two faces of one chart do not pass in opposite directions, and then as many more as it takes
   /// until vertices of several fans have open ones only, no loop has two vertices, and no two edges the same ends.
-  CutSurface(const IndexedMesh& mesh, const std::vector<std::uint32_t>& chart_of_face);
+  /// \param fixed are cut as well
+  /// \param corners vertices that have another fan outside the mesh
+  CutSurface(const IndexedMesh& mesh, const std::vector<std::uint32_t>& chart_of_face, std::span<const FixedWire> fixed,
+             std::span<const std::uint32_t> corners);
 
   [[nodiscard]] bool is_border(HalfEdge h) const { return mate_[h] == kNoTwin; }
   /// The border half-edge that follows another on its loop.
@@ -24,6 +29,7 @@ class CutSurface {
   [[nodiscard]] std::size_t fan_count() const { return fans_.size(); }
   [[nodiscard]] bool is_closed(std::uint32_t fan) const { return fans_[fan].closed; }
   [[nodiscard]] std::uint32_t edge_of(HalfEdge h) const { return edges_.edge_of[h]; }
+  [[nodiscard]] WireOrigin origin_of(std::uint32_t edge) const { return fixed_.origin_of(edge); }
   [[nodiscard]] std::size_t edge_count() const { return edges_.edge_count(); }
   [[nodiscard]] std::uint32_t start_of(HalfEdge h) const { return mesh_.faces[face_of(h)][h % 3]; }
   [[nodiscard]] std::uint32_t end_of(HalfEdge h) const { return start_of(next_in_face(h)); }
@@ -43,7 +49,9 @@ class CutSurface {
   void cut(HalfEdge h);
 
   const IndexedMesh& mesh_;
+  std::span<const std::uint32_t> corners_;
   EdgeGroups edges_;
+  FixedEdges fixed_;
   std::vector<HalfEdge> mate_;  ///< the half-edge glued to this one
   std::vector<std::uint32_t> fan_of_;
   std::vector<Fan> fans_;

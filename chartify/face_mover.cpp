@@ -30,7 +30,7 @@ FaceMover::Choice FaceMover::best_choice(std::uint32_t face) const {
   const std::uint32_t from = chart(face);
   Choice best;
   for (const std::uint32_t to : around) {
-    if (to == kNone || to == from || to == best.to) continue;
+    if (to == kNone || to == from || to == best.to || !may_move(face, to)) continue;
     const Choice choice{to, gain(around, from, to)};
     if (best.to == kNone || choice.gain > best.gain ||
         (choice.gain == best.gain && std::pair(size(to), to) < std::pair(size(best.to), best.to)))
@@ -44,7 +44,7 @@ FaceMover::Choice FaceMover::smallest_choice(std::uint32_t face) const {
   const std::uint32_t from = chart(face);
   Choice best;
   for (const std::uint32_t to : around) {
-    if (to == kNone || to == from || size(to) >= size(from)) continue;
+    if (to == kNone || to == from || size(to) >= size(from) || !may_move(face, to)) continue;
     if (best.to == kNone || std::pair(size(to), to) < std::pair(size(best.to), best.to))
       best = {to, gain(around, from, to)};
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "chartify/half_edge_twins.h"
+#include "chartify/move_rules.h"
 #include "chartify/partition.h"
 
 namespace ramcdb::chartify {
@@ -29,8 +30,10 @@ struct SizeLimits {
 /// look at the faces around one vertex only.
 class FaceMover {
  public:
-  FaceMover(const std::vector<HalfEdge>& twins, const SizeLimits& limits, Partition& partition)
-      : twins_(twins), limits_(limits), partition_(partition) {}
+  /// \param rules which faces may move; nullptr: all
+  FaceMover(const std::vector<HalfEdge>& twins, const SizeLimits& limits, Partition& partition,
+            const MoveRules* rules = nullptr)
+      : twins_(twins), limits_(limits), partition_(partition), rules_(rules) {}
 
   static constexpr int kMostGain = 3;
 
@@ -39,8 +42,8 @@ class FaceMover {
     int gain = 0;  ///< edges that stop to be border less edges that become border
   };
 
-  /// Of the charts around a face the one with most edges to it; ties to the smaller chart, then to the lower number.
-  /// kNone for a face inside its chart.
+  /// Of the charts around a face that it may move to the one with most edges to it; ties to the smaller chart, then to
+  /// the lower number. kNone for a face inside its chart, or one that may not move.
   [[nodiscard]] Choice best_choice(std::uint32_t face) const;
   /// The smallest chart around a face that is smaller than the face's own.
   [[nodiscard]] Choice smallest_choice(std::uint32_t face) const;
@@ -65,6 +68,9 @@ class FaceMover {
   }
 
  private:
+  [[nodiscard]] bool may_move(std::uint32_t face, std::uint32_t to) const {
+    return rules_ == nullptr || rules_->allow(face, to);
+  }
   [[nodiscard]] std::array<std::uint32_t, 3> charts_around(std::uint32_t face) const;
   [[nodiscard]] int gain(const std::array<std::uint32_t, 3>& around, std::uint32_t from, std::uint32_t to) const;
   /// Whether all other faces around the start of a half-edge form one fan that is wholly in a chart,
@@ -76,6 +82,7 @@ class FaceMover {
   const std::vector<HalfEdge>& twins_;
   const SizeLimits& limits_;
   Partition& partition_;
+  const MoveRules* rules_;
 };
 
 }  // namespace ramcdb::chartify

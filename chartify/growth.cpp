@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "chartify/bucket_queue.h"
 #include "chartify/hilbert_cells.h"
 
 namespace ramcdb::chartify {
@@ -13,36 +14,6 @@ __extension__ using Wide = unsigned __int128;
 
 // What a chart pays for each further face, in 1/256; the balance term makes big charts pay more.
 constexpr std::uint32_t kFirstWeight = 16 * 256, kSmallestWeight = 5 * 256, kLargestWeight = 48 * 256;
-constexpr std::size_t kBuckets = 1024;  // more than any weight, so that the ring never laps itself
-
-/// A priority queue for keys that never fall behind the last popped one by more than the ring; last in, first out
-/// among equal keys.
-class BucketQueue {
- public:
-  struct Entry {
-    std::uint32_t face, chart;
-  };
-
-  void push(std::uint64_t key, Entry entry) {
-    ring_[key % kBuckets].push_back(entry);
-    ++size_;
-  }
-  [[nodiscard]] bool empty() const { return size_ == 0; }
-  Entry pop(std::uint64_t& key) {
-    while (ring_[key_ % kBuckets].empty()) ++key_;
-    key = key_;
-    std::vector<Entry>& bucket = ring_[key_ % kBuckets];
-    const Entry entry = bucket.back();
-    bucket.pop_back();
-    --size_;
-    return entry;
-  }
-
- private:
-  std::array<std::vector<Entry>, kBuckets> ring_;
-  std::uint64_t key_ = 0;
-  std::size_t size_ = 0;
-};
 
 class Grower {
  public:

@@ -12,7 +12,7 @@ constexpr std::size_t kMostAtEdge = 64;
 
 struct Ends {
   std::uint32_t low, high;
-  friend bool operator==(const Ends&, const Ends&) = default;
+  friend auto operator<=>(const Ends&, const Ends&) = default;
 };
 
 Ends ends_of(const IndexedMesh& mesh, HalfEdge h) {
@@ -64,6 +64,15 @@ EdgeGroups group_half_edges(const IndexedMesh& mesh) {
   }
   groups.first.push_back(static_cast<std::uint32_t>(count));
   return groups;
+}
+
+std::uint32_t find_edge(const IndexedMesh& mesh, const EdgeGroups& edges, std::uint32_t u, std::uint32_t v) {
+  const Ends wanted{std::min(u, v), std::max(u, v)};
+  const auto ends = [&](std::uint32_t first) { return ends_of(mesh, edges.half_edges[first]); };
+  const auto last = edges.first.end() - 1;
+  const auto found = std::lower_bound(edges.first.begin(), last, wanted,
+                                      [&](std::uint32_t first, const Ends& e) { return ends(first) < e; });
+  return found == last || ends(*found) != wanted ? kNone : static_cast<std::uint32_t>(found - edges.first.begin());
 }
 
 std::vector<HalfEdge> find_twins(const IndexedMesh& mesh, const EdgeGroups& edges) {

@@ -27,6 +27,10 @@ struct EdgeGroups {
 /// Edges are numbered by their vertex pairs, ascending.
 [[nodiscard]] EdgeGroups group_half_edges(const IndexedMesh& mesh);
 
+/// The edge between two vertices, found by halving; kNone where the mesh has none.
+[[nodiscard]] std::uint32_t find_edge(const IndexedMesh& mesh, const EdgeGroups& edges, std::uint32_t u,
+                                      std::uint32_t v);
+
 /// For every half-edge the one that two different faces share with it in opposite directions, where just these two lie
 /// on the edge, or where both belong to one polygon; kNoTwin elsewhere. Faces are adjacent over such edges and no
 /// others.

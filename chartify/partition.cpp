@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <map>
+#include <string>
+
+#include "ramcdb/error.h"
 
 namespace ramcdb::chartify {
 
@@ -14,14 +17,9 @@ Neighbours find_neighbours(const std::vector<HalfEdge>& twins) {
 
 namespace {
 
-struct Pieces {
-  std::vector<std::uint32_t> piece_of_face;
-  std::vector<std::uint32_t> sizes;
-};
-
 /// Floods faces over edges that `joined` lets pass; pieces are numbered by their first faces.
 template <class Joined>
-Pieces find_pieces(const Neighbours& neighbours, Joined&& joined) {
+Pieces flood_pieces(const Neighbours& neighbours, Joined&& joined) {
   Pieces out;
   const std::size_t faces = neighbours.size() / 3;
   out.piece_of_face.assign(faces, kNone);
@@ -82,22 +80,32 @@ std::uint32_t closest_chart(const Neighbours& neighbours, const Partition& parti
 }  // namespace
 
 Regions find_components(const Neighbours& neighbours, std::uint32_t target) {
-  Pieces pieces = find_pieces(neighbours, [](std::uint32_t, std::uint32_t) { return true; });
+  Pieces pieces = flood_pieces(neighbours, [](std::uint32_t, std::uint32_t) { return true; });
   Regions out{std::move(pieces.piece_of_face), std::move(pieces.sizes), {}};
   for (const std::uint64_t size : out.sizes)
     out.charts.push_back(2 * size < target ? 0 : static_cast<std::uint32_t>((2 * size + target) / (2ULL * target)));
   return out;
 }
 
+Pieces find_pieces(const Neighbours& neighbours, const std::vector<std::uint32_t>& chart_of_face) {
+  return flood_pieces(neighbours,
+                      [&](std::uint32_t f, std::uint32_t g) { return chart_of_face[f] == chart_of_face[g]; });
+}
+
+void require_target(const Options& options) {
+  if (options.target_faces == 0 || options.target_faces > kMostTargetFaces)
+    throw Error(Errc::invalid_argument, "charts of " + std::to_string(options.target_faces) + " faces", "chartify",
+                "aim at 1 to " + std::to_string(kMostTargetFaces) + " faces");
+}
+
 void merge_pieces(const Neighbours& neighbours, Partition& partition) {
   const std::vector<std::uint32_t>& chart_of_face = partition.chart_of_face;
-  const Pieces pieces =
-      find_pieces(neighbours, [&](std::uint32_t f, std::uint32_t g) { return chart_of_face[f] == chart_of_face[g]; });
-  if (pieces.sizes.size() == partition.sizes.size()) return;
+  const Pieces pieces = find_pieces(neighbours, chart_of_face);
   std::vector<std::uint32_t> chart_of_piece(pieces.sizes.size());
   std::vector<std::vector<std::uint32_t>> faces(pieces.sizes.size());
   for (std::uint32_t f = 0; f < chart_of_face.size(); ++f) chart_of_piece[pieces.piece_of_face[f]] = chart_of_face[f];
   const std::vector<std::uint32_t> strays = stray_pieces(pieces, chart_of_piece, partition.sizes.size());
+  if (strays.empty()) return;
   std::vector<std::uint8_t> waits(pieces.sizes.size(), 0);
   for (const std::uint32_t p : strays) waits[p] = 1;
   for (std::uint32_t f = 0; f < chart_of_face.size(); ++f)

@@ -9,8 +9,6 @@
 
 namespace ramcdb::chartify {
 
-inline constexpr std::uint32_t kNone = ~std::uint32_t{0};
-
 /// The faces beyond the three edges of every face, kNone where nobody is adjacent (find_twins says when).
 using Neighbours = std::vector<std::uint32_t>;
 [[nodiscard]] Neighbours find_neighbours(const std::vector<HalfEdge>& twins);
@@ -37,12 +35,22 @@ struct Regions {
 /// less than half the target.
 [[nodiscard]] Regions find_components(const Neighbours& neighbours, std::uint32_t target);
 
+/// What hangs together within its chart, numbered by first faces; faces of no chart among themselves likewise.
+struct Pieces {
+  std::vector<std::uint32_t> piece_of_face;
+  std::vector<std::uint32_t> sizes;
+};
+[[nodiscard]] Pieces find_pieces(const Neighbours& neighbours, const std::vector<std::uint32_t>& chart_of_face);
+
 /// Numbers charts in the order of their first faces and drops empty ones.
 void renumber(Partition& partition);
 
 /// Makes charts connected: all but the largest piece of a chart join the chart around them that they share the longest
 /// border with. Pieces without a chart beside them stay.
 void merge_pieces(const Neighbours& neighbours, Partition& partition);
+
+/// Errors: invalid_argument for a target out of range.
+void require_target(const Options& options);
 
 /// Called between stages with the share that is done; may throw to cancel.
 using Progress = std::function<void(double)>;

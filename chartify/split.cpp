@@ -7,8 +7,9 @@
 namespace ramcdb::chartify {
 namespace {
 
-constexpr int kLloydIterations = 3;
 constexpr int kSplitRounds = 8;  // a part may come out far too large again
+
+}  // namespace
 
 Neighbours neighbours_within_charts(const Neighbours& neighbours, const std::vector<std::uint32_t>& chart_of_face) {
   Neighbours within = neighbours;
@@ -17,13 +18,11 @@ Neighbours neighbours_within_charts(const Neighbours& neighbours, const std::vec
   return within;
 }
 
-}  // namespace
-
 void split_charts(const IndexedMesh& mesh, const Neighbours& neighbours, const std::vector<std::uint32_t>& parts,
                   Partition& partition) {
   const Regions regions{partition.chart_of_face, partition.sizes, parts};
   const Neighbours within = neighbours_within_charts(neighbours, partition.chart_of_face);
-  const Partition split = grow_charts(mesh, within, regions, kLloydIterations, nullptr);
+  const Partition split = grow_charts(mesh, within, regions, kSplitIterations, nullptr);
   const auto offset = static_cast<std::uint32_t>(partition.sizes.size());
   for (std::size_t f = 0; f < partition.chart_of_face.size(); ++f)
     if (split.chart_of_face[f] != kNone) partition.chart_of_face[f] = offset + split.chart_of_face[f];

@@ -25,11 +25,12 @@ double edge_length(const IndexedMesh& mesh, std::uint32_t u, std::uint32_t v) {
 class Straightener {
  public:
   Straightener(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const SizeLimits& limits,
-               Partition& partition)
+               Partition& partition, const MoveRules* rules)
       : mesh_(mesh),
         twins_(twins),
         limits_(limits),
         partition_(partition),
+        rules_(rules),
         fans_(mesh, twins),
         vertex_(mesh.positions.size()),
         on_path_(twins.size(), 0) {
@@ -61,6 +62,12 @@ class Straightener {
     return kCostPerEdge + static_cast<std::uint32_t>(std::min(64.0, length / mean_length_) * kCostPerEdge + 0.5);
   }
 
+  [[nodiscard]] bool may_change(std::uint32_t face, std::uint32_t to) const {
+    return rules_ == nullptr || rules_->allow(face, to);
+  }
+  /// Whether the face that a border half-edge is of may change sides.
+  [[nodiscard]] bool may_move(HalfEdge h) const { return may_change(face_of(h), chart_left(twins_[h])); }
+
   void straighten(const BorderPath& path) {
     ++number_;
     left_ = chart_left(path.front());
@@ -68,6 +75,7 @@ class Straightener {
     begin_ = start_of(path.front());
     end_ = end_of(path.back());
     if (begin_ == end_ || left_ == right_) return;  // straightening another border may have merged the two sides
+    if (std::ranges::none_of(path, [&](HalfEdge h) { return may_move(h) || may_move(twins_[h]); })) return;
     mark_band(path);
     std::uint32_t cost = 0;
     for (const HalfEdge h : path) cost += cost_of(h);
@@ -187,6 +195,7 @@ class Straightener {
 
   [[nodiscard]] bool flood(std::uint32_t seed, std::uint32_t from, std::uint32_t to) {
     if (partition_.chart_of_face[seed] != from) return true;
+    if (!may_change(seed, to)) return false;
     open_.assign(1, seed);
     change(seed, from, to);
     while (!open_.empty()) {
@@ -194,7 +203,7 @@ class Straightener {
       open_.pop_back();
       for (HalfEdge h = 3 * f; h < 3 * f + 3; ++h) {
         if (twins_[h] == kNoTwin || on_path_[h] == number_ || chart_left(twins_[h]) != from) continue;
-        if (changed_.size() >= limits_.target) return false;
+        if (changed_.size() >= limits_.target || !may_change(face_of(twins_[h]), to)) return false;
         change(face_of(twins_[h]), from, to);
         open_.push_back(face_of(twins_[h]));
       }
@@ -234,6 +243,7 @@ class Straightener {
   const std::vector<HalfEdge>& twins_;
   const SizeLimits& limits_;
   Partition& partition_;
+  const MoveRules* rules_;
   ClosedFans fans_;
   double mean_length_ = 1;
   std::uint32_t number_ = 0, left_ = 0, right_ = 0, begin_ = 0, end_ = 0;
@@ -248,8 +258,8 @@ class Straightener {
 }  // namespace
 
 void straighten_borders(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const SizeLimits& limits,
-                        Partition& partition) {
-  Straightener(mesh, twins, limits, partition).run();
+                        Partition& partition, const MoveRules* rules) {
+  Straightener(mesh, twins, limits, partition, rules).run();
 }
 
 }  // namespace ramcdb::chartify

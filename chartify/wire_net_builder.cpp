@@ -11,8 +11,12 @@ namespace {
 /// Which vertices end wires.
 class CornerFinder {
  public:
-  CornerFinder(const IndexedMesh& mesh, const CutSurface& surface)
-      : surface_(surface), mesh_(mesh), edges_at_(mesh.positions.size()), corner_(mesh.positions.size(), 0) {}
+  CornerFinder(const IndexedMesh& mesh, const CutSurface& surface, std::span<const FixedWire> fixed,
+               std::span<const std::uint32_t> corners)
+      : surface_(surface), mesh_(mesh), edges_at_(mesh.positions.size()), corner_(mesh.positions.size(), 0) {
+    for (const std::uint32_t v : corners) corner_[v] = 1;
+    for (const FixedWire& wire : fixed) corner_[wire.vertices.front()] = corner_[wire.vertices.back()] = 1;
+  }
 
   std::vector<std::uint8_t> run() {
     const auto half_edges = static_cast<HalfEdge>(3 * mesh_.faces.size());
@@ -21,7 +25,7 @@ class CornerFinder {
     for (HalfEdge h = 0; h < half_edges; ++h)
       if (surface_.is_border(h)) check_pass(h);
     for (std::size_t v = 0; v < corner_.size(); ++v)
-      if (edges_at_[v].first != kNone && edges_at_[v].second == kNone) corner_[v] = 1;
+      if (edges_at_[v].first != kNone && !goes_on(edges_at_[v])) corner_[v] = 1;
     close_rings(half_edges);
     return std::move(corner_);
   }
@@ -30,6 +34,13 @@ class CornerFinder {
   struct TwoEdges {
     std::uint32_t first = kNone, second = kNone;
   };
+
+  /// Whether a wire may run over both edges: those of a fixed wire in turn, or two that are on none.
+  [[nodiscard]] bool goes_on(const TwoEdges& two) const {
+    if (two.second == kNone) return false;
+    const WireOrigin a = surface_.origin_of(two.first), b = surface_.origin_of(two.second);
+    return a.fixed == b.fixed && (a.fixed == kNone || a.first + 1 == b.first || b.first + 1 == a.first);
+  }
 
   void add_edge(HalfEdge h) {
     const std::uint32_t edge = surface_.edge_of(h), u = surface_.start_of(h), v = surface_.end_of(h);
@@ -76,11 +87,13 @@ class CornerFinder {
 
 class Builder {
  public:
-  Builder(const IndexedMesh& mesh, const Charts& charts)
+  Builder(const IndexedMesh& mesh, const Charts& charts, std::span<const FixedWire> fixed,
+          std::span<const std::uint32_t> corners)
       : mesh_(mesh),
         charts_(charts),
-        surface_(mesh, charts.chart_of_face),
-        is_corner_(CornerFinder(mesh, surface_).run()),
+        fixed_(fixed),
+        surface_(mesh, charts.chart_of_face, fixed, corners),
+        is_corner_(CornerFinder(mesh, surface_, fixed, corners).run()),
         wire_of_edge_(surface_.edge_count(), kNone),
         corner_of_(mesh.positions.size(), kNone),
         local_of_fan_(surface_.fan_count(), kNone),
@@ -161,9 +174,20 @@ class Builder {
       wire.vertices.push_back(surface_.start_of(h));
     }
     wire.vertices.push_back(surface_.end_of(pass_.back()));
+    net_.origin.push_back(surface_.origin_of(surface_.edge_of(pass_.front())));
+    if (runs_against(pass_.front())) {
+      std::reverse(wire.vertices.begin(), wire.vertices.end());
+      net_.origin.back() = surface_.origin_of(surface_.edge_of(pass_.back()));
+    }
     wire.begin_corner = corner_at(wire.vertices.front());
     wire.end_corner = corner_at(wire.vertices.back());
     net_.wires.push_back(std::move(wire));
+  }
+
+  /// Whether a half-edge on a fixed wire passes it backwards.
+  [[nodiscard]] bool runs_against(HalfEdge h) const {
+    const WireOrigin origin = surface_.origin_of(surface_.edge_of(h));
+    return origin.fixed != kNone && fixed_[origin.fixed].vertices[origin.first] != surface_.start_of(h);
   }
 
   std::uint32_t corner_at(std::uint32_t vertex) {
@@ -197,6 +221,7 @@ class Builder {
 
   const IndexedMesh& mesh_;
   const Charts& charts_;
+  std::span<const FixedWire> fixed_;
   CutSurface surface_;
   std::vector<std::uint8_t> is_corner_;
   std::vector<std::uint32_t> wire_of_edge_, corner_of_, local_of_fan_;
@@ -207,6 +232,9 @@ class Builder {
 
 }  // namespace
 
-WireNet build_wire_net(const IndexedMesh& mesh, const Charts& charts) { return Builder(mesh, charts).run(); }
+WireNet build_wire_net(const IndexedMesh& mesh, const Charts& charts, std::span<const FixedWire> fixed,
+                       std::span<const std::uint32_t> corners) {
+  return Builder(mesh, charts, fixed, corners).run();
+}
 
 }  // namespace ramcdb::chartify

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "chartify/chartify.h"
+#include "chartify/fixed_wires.h"
 #include "ramcdb/chart.h"
 
 namespace ramcdb::chartify {
@@ -35,12 +37,23 @@ struct NetChart {
 /// vertices is lengthened by one edge, so that all local copies of a vertex are known through wires. A corner ends
 /// wires: any vertex where other than two cut edges meet, or where a loop does not go on from one to the other. A
 /// closed wire without a corner gets one at its smallest position.
+///
+/// The edges of fixed wires are all cut, and the ends of these wires are corners. A wire that lies on one is the whole
+/// of it or a part between new corners, runs in its direction and says so in `origin`; no other edges are on it.
 struct WireNet {
   std::vector<std::uint32_t> corners;  ///< mesh vertex of each corner
   std::vector<NetWire> wires;          ///< in the order in which charts' loops first pass them, and so directed
+                                       ///< unless fixed
   std::vector<NetChart> charts;
+  std::vector<WireOrigin> origin;  ///< per wire
 };
 
-[[nodiscard]] WireNet build_wire_net(const IndexedMesh& mesh, const Charts& charts);
+/// \param fixed wires that charts outside the mesh pass too. REQUIRES: all their edges are edges of the mesh
+/// \param corners vertices that stay corners whatever the mesh says, as others outside it end wires there or touch it
+///        in just this vertex; those without a face are left alone
+/// Errors: invalid_argument where a fixed wire runs along no edge of the mesh, or two along the same.
+[[nodiscard]] WireNet build_wire_net(const IndexedMesh& mesh, const Charts& charts,
+                                     std::span<const FixedWire> fixed = {},
+                                     std::span<const std::uint32_t> corners = {});
 
 }  // namespace ramcdb::chartify
