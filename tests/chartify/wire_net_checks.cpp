@@ -117,10 +117,22 @@ void check_copies(const IndexedMesh& mesh, const WireNet& net) {
       ASSERT_EQ(copies[chart.mesh_vertex[local]], 1U) << "an inner vertex stands in another place too";
 }
 
-/// Loops are the wires they name; wires list the charts that pass them and are numbered and directed by the first pass.
+/// Wires are numbered and directed by the first pass.
+void check_order(const WireNet& net) {
+  std::uint32_t seen = 0;
+  for (const NetChart& chart : net.charts)
+    for (const auto& loop : chart.loops)
+      for (const NetLoopStep step : loop) {
+        ASSERT_LE(step.wire, seen) << "wires are not numbered in the order of their first passes";
+        if (step.wire < seen) continue;
+        ASSERT_FALSE(step.reversed) << "the first pass of a wire is reversed";
+        ++seen;
+      }
+}
+
+/// Loops are the wires they name; wires list the charts that pass them.
 void check_loops(const WireNet& net) {
   std::vector<std::vector<std::uint32_t>> passes(net.wires.size());
-  std::uint32_t seen = 0;
   for (std::uint32_t c = 0; c < net.charts.size(); ++c) {
     const NetChart& chart = net.charts[c];
     ASSERT_EQ(chart.loops.size(), chart.chart.loop_sizes.size());
@@ -128,11 +140,6 @@ void check_loops(const WireNet& net) {
     for (std::size_t l = 0; l < chart.loops.size(); ++l) {
       std::vector<std::uint32_t> along;
       for (const NetLoopStep step : chart.loops[l]) {
-        ASSERT_LE(step.wire, seen) << "wires are not numbered in the order of their first passes";
-        if (step.wire == seen) {
-          ASSERT_FALSE(step.reversed) << "the first pass of a wire is reversed";
-          ++seen;
-        }
         passes.at(step.wire).push_back(c);
         const std::vector<std::uint32_t> vertices = vertices_along(net, step);
         along.insert(along.end(), vertices.begin(), vertices.end() - 1);
@@ -142,8 +149,10 @@ void check_loops(const WireNet& net) {
       first += chart.chart.loop_sizes[l];
     }
   }
-  ASSERT_EQ(seen, net.wires.size()) << "a wire that no chart passes";
-  for (std::size_t w = 0; w < net.wires.size(); ++w) ASSERT_EQ(net.wires[w].charts, passes[w]) << "wire " << w;
+  for (std::size_t w = 0; w < net.wires.size(); ++w) {
+    ASSERT_FALSE(passes[w].empty()) << "a wire that no chart passes";
+    ASSERT_EQ(net.wires[w].charts, passes[w]) << "wire " << w;
+  }
 }
 
 /// The wires that end or pass at a vertex, one entry per edge of theirs there.
@@ -171,12 +180,11 @@ std::set<std::uint32_t> turning_points(const WireNet& net) {
   return points;
 }
 
-/// Wires end at corners, pass none, and end nowhere without need.
-void check_corners(const IndexedMesh& mesh, const WireNet& net) {
+/// Wires end at corners and pass none.
+void check_ends(const WireNet& net) {
   const std::set<std::uint32_t> corners(net.corners.begin(), net.corners.end());
   ASSERT_EQ(corners.size(), net.corners.size()) << "two corners at one vertex";
   const auto wires_at = wires_at_vertices(net);
-  const auto turns = turning_points(net);
   for (const NetWire& wire : net.wires) {
     ASSERT_GE(wire.vertices.size(), 2U);
     ASSERT_EQ(net.corners.at(wire.begin_corner), wire.vertices.front());
@@ -186,8 +194,14 @@ void check_corners(const IndexedMesh& mesh, const WireNet& net) {
       ASSERT_EQ(wires_at.at(wire.vertices[i]).size(), 2U);
     }
   }
-  for (const std::uint32_t v : corners) {
-    ASSERT_TRUE(wires_at.contains(v)) << "a corner without a wire";
+  for (const std::uint32_t v : corners) ASSERT_TRUE(wires_at.contains(v)) << "a corner without a wire";
+}
+
+/// Wires end nowhere without need.
+void check_need_of_corners(const IndexedMesh& mesh, const WireNet& net) {
+  const auto wires_at = wires_at_vertices(net);
+  const auto turns = turning_points(net);
+  for (const std::uint32_t v : net.corners) {
     const std::vector<std::uint32_t>& wires = wires_at.at(v);
     if (wires.size() != 2 || turns.contains(v)) continue;
     const NetWire& wire = net.wires[wires[0]];
@@ -251,13 +265,50 @@ void check_chart(const Chart& chart) {
   check_fans(chart);
 }
 
-void check_wire_net(const IndexedMesh& mesh, const Charts& charts, const WireNet& net) {
+void check_edited_net(const IndexedMesh& mesh, const Charts& charts, const WireNet& net) {
   for (const NetChart& chart : net.charts) ASSERT_NO_FATAL_FAILURE(check_chart(chart.chart));
   ASSERT_NO_FATAL_FAILURE(check_faces_and_vertices(mesh, charts, net));
   ASSERT_NO_FATAL_FAILURE(check_copies(mesh, net));
   ASSERT_NO_FATAL_FAILURE(check_loops(net));
-  ASSERT_NO_FATAL_FAILURE(check_corners(mesh, net));
+  ASSERT_NO_FATAL_FAILURE(check_ends(net));
   ASSERT_NO_FATAL_FAILURE(check_cut_edges(mesh, charts, net));
+}
+
+void check_wire_net(const IndexedMesh& mesh, const Charts& charts, const WireNet& net) {
+  ASSERT_NO_FATAL_FAILURE(check_edited_net(mesh, charts, net));
+  ASSERT_NO_FATAL_FAILURE(check_order(net));
+  ASSERT_NO_FATAL_FAILURE(check_need_of_corners(mesh, net));
+}
+
+void check_origins(const WireNet& net, std::span<const FixedWire> fixed) {
+  ASSERT_EQ(net.origin.size(), net.wires.size());
+  std::vector<std::vector<std::uint32_t>> parts(fixed.size());
+  std::set<Edge> fixed_edges;
+  for (const FixedWire& wire : fixed)
+    for (std::size_t i = 1; i < wire.vertices.size(); ++i)
+      fixed_edges.insert(undirected(wire.vertices[i - 1], wire.vertices[i]));
+  for (std::uint32_t w = 0; w < net.wires.size(); ++w) {
+    const auto& vertices = net.wires[w].vertices;
+    const auto [on, first] = net.origin[w];
+    if (on != kNone) {
+      const auto& whole = fixed[on].vertices;
+      ASSERT_LE(first + vertices.size(), whole.size());
+      ASSERT_TRUE(std::equal(vertices.begin(), vertices.end(), whole.begin() + first)) << "wire " << w;
+      parts[on].push_back(w);
+      continue;
+    }
+    for (std::size_t i = 1; i < vertices.size(); ++i)
+      ASSERT_FALSE(fixed_edges.contains(undirected(vertices[i - 1], vertices[i]))) << "another wire on a fixed edge";
+  }
+  for (std::size_t on = 0; on < fixed.size(); ++on) {
+    std::ranges::sort(parts[on], {}, [&](std::uint32_t w) { return net.origin[w].first; });
+    std::uint32_t at = 0;
+    for (const std::uint32_t w : parts[on]) {
+      ASSERT_EQ(net.origin[w].first, at) << "a gap in fixed wire " << on;
+      at += static_cast<std::uint32_t>(net.wires[w].vertices.size()) - 1;
+    }
+    ASSERT_EQ(at + 1, fixed[on].vertices.size()) << "fixed wire " << on << " is not covered to its end";
+  }
 }
 
 }  // namespace ramcdb::chartify::test
