@@ -53,6 +53,7 @@ MeshData read(const FileBytes& file, Format format, const Progress& progress) {
       break;
   }
   check(file, mesh);
+  mesh.repeats_vertices = format == Format::stl || is_gltf(format);
   return mesh;
 }
 

@@ -40,6 +40,7 @@ struct MeshData {
   std::vector<Attribute> attributes;      ///< corners count as in `corners`
   std::vector<std::string> references;    ///< other files that it names: "mtllib a.mtl", "texture skin.png"
   bool soup = false;                      ///< every face has vertices of its own (STL)
+  bool repeats_vertices = false;          ///< a vertex may stand several times: STL, and glTF where corners differ
 
   std::vector<Dropped> dropped;  ///< what the file holds beside the above
 

@@ -47,7 +47,7 @@ void weld_exact(MeshData& mesh) {
   if (!mesh.vertex_ids.empty()) mesh.vertex_ids.resize(kept);
   for (Attribute* attribute : attributes) attribute->values.resize(std::size_t{kept} * attribute->info.components);
   for (std::uint32_t& v : mesh.corners) v = to[v];
-  mesh.soup = false;
+  mesh.soup = mesh.repeats_vertices = false;
 }
 
 }  // namespace ramcdb::mesh_file

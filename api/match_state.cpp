@@ -1,0 +1,83 @@
+#include "api/match_state.h"
+
+#include <algorithm>
+
+#include "api/point_numbers.h"
+
+namespace ramcdb::detail {
+namespace {
+
+std::uint64_t hash_of(std::span<const std::uint32_t> cycle) {
+  return hash_of_cycle(static_cast<std::uint32_t>(cycle.size()), [&](std::uint32_t i) { return cycle[i]; });
+}
+
+std::vector<std::uint64_t> keys_of_faces(const Surface& s) {
+  std::vector<std::uint64_t> keys(s.face_count());
+  for (std::uint32_t f = 0; f < keys.size(); ++f) keys[f] = hash_of(s.vertices(f));
+  return keys;
+}
+
+}  // namespace
+
+Places::Places(const Surface& from_surface, const Rings& from_rings, const Surface& to_surface, const Rings& to_rings) {
+  PointNumbers numbers(from_surface.points.size() + to_surface.points.size());
+  for (const LatticePoint p : from_surface.points) from.push_back(numbers.number(p));
+  for (const LatticePoint p : to_surface.points) to.push_back(numbers.number(p));
+  const auto count = [&](const Rings& rings, const std::vector<std::uint32_t>& places, auto& counts, auto& firsts) {
+    counts.assign(numbers.count(), 0);
+    firsts.assign(numbers.count(), kNowhere);
+    for (std::uint32_t v = 0; v < places.size(); ++v)
+      if (rings.degree(v) && counts[places[v]]++ == 0) firsts[places[v]] = v;
+  };
+  count(from_rings, from, count_from, first_from);
+  count(to_rings, to, count_to, first_to);
+}
+
+FaceFinder::FaceFinder(const Surface& surface) : surface_(surface), index_(keys_of_faces(surface)) {}
+
+bool FaceFinder::has(std::span<const std::uint32_t> cycle) const {
+  std::uint32_t f = index_.first(hash_of(cycle));
+  while (f != kNowhere && turned(f, cycle).face == FaceMatch::kNone) f = index_.after(f);
+  return f != kNowhere;
+}
+
+FaceMatch FaceFinder::take(std::span<const std::uint32_t> cycle) {
+  FaceMatch match;
+  (void)index_.take(hash_of(cycle), ~0U, [&](std::uint32_t f) {
+    match = turned(f, cycle);
+    return match.face != FaceMatch::kNone;
+  });
+  return match;
+}
+
+FaceMatch FaceFinder::turned(std::uint32_t face, std::span<const std::uint32_t> cycle) const {
+  const auto vertices = surface_.vertices(face);
+  if (vertices.size() != cycle.size()) return {};
+  for (std::uint32_t turn = 0; turn < cycle.size(); ++turn) {
+    const auto split = vertices.begin() + turn;
+    const auto middle = cycle.begin() + (vertices.end() - split);
+    if (std::equal(split, vertices.end(), cycle.begin()) && std::equal(vertices.begin(), split, middle))
+      return {face, turn};
+  }
+  return {};
+}
+
+MatchState::MatchState(const Surface& from_surface, const Surface& to_surface)
+    : from(from_surface),
+      to(to_surface),
+      from_rings(from),
+      to_rings(to),
+      places(from, from_rings, to, to_rings),
+      faces(from),
+      pairs(from.points.size(), to.points.size()) {}
+
+bool MatchState::known_cycle(std::uint32_t face, std::vector<std::uint32_t>& cycle) const {
+  cycle.clear();
+  for (const std::uint32_t w : to.vertices(face)) {
+    if (pairs.from(w) == kNowhere) return false;
+    cycle.push_back(pairs.from(w));
+  }
+  return true;
+}
+
+}  // namespace ramcdb::detail

@@ -1,0 +1,256 @@
+#include "api/region_match.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "api/welded_surface.h"
+
+namespace ramcdb::detail {
+namespace {
+
+/// The vertex of the region that each id names.
+std::vector<std::uint32_t> vertices_named(const RegionMesh& region, std::span<const std::uint64_t> ids) {
+  if (ids.empty()) return {};
+  std::vector<std::uint64_t> keys;
+  for (const VertexKey& key : region.keys) keys.push_back(hash_of(key.packed(), 0));
+  const HashIndex index(std::move(keys));
+  std::vector<std::uint32_t> named;
+  for (const std::uint64_t id : ids) {
+    std::uint32_t v = index.first(hash_of(id, 0));
+    while (v != kNowhere && region.keys[v].packed() != id) v = index.after(v);
+    named.push_back(v);
+  }
+  return named;
+}
+
+std::vector<std::uint32_t> isolated_vertices(std::size_t vertices, std::span<const std::uint32_t> corners) {
+  std::vector<bool> used(vertices, false);
+  for (const std::uint32_t v : corners) used[v] = true;
+  std::vector<std::uint32_t> isolated;
+  for (std::uint32_t v = 0; v < vertices; ++v)
+    if (!used[v]) isolated.push_back(v);
+  return isolated;
+}
+
+/// What is known of a vertex of the other mesh: the vertex of the region that it is, or kNowhere; and if it is new, the
+/// number of the new vertex.
+struct Found {
+  std::vector<std::uint32_t> region_vertex, fresh;
+  std::vector<FaceMatch> faces;
+};
+
+/// Vertices of both meshes that lie on one point are one while they are matched: which of the region's they are, the
+/// faces say that survive.
+class WeldedMatch {
+ public:
+  WeldedMatch(const Surface& region, const Surface& other)
+      : region_(region), other_(other), mine_(weld_by_place(region)), theirs_(weld_by_place(other)) {}
+
+  Found run() {
+    SurfaceMatch match = match_surfaces(mine_.surface(), theirs_.surface());
+    found_.region_vertex.assign(other_.points.size(), kNowhere);
+    found_.faces = std::move(match.faces);
+    vertices_of_faces();
+    remaining_vertices(match.vertices);
+    drop_joined_faces();
+    found_.fresh = std::move(theirs_.node);
+    return std::move(found_);
+  }
+
+ private:
+  /// The vertex of the region at a corner of a face that survives.
+  [[nodiscard]] std::uint32_t vertex_at(FaceMatch match, std::uint32_t i) const {
+    return region_.corners[region_.corner(match.face, i + match.turn)];
+  }
+
+  void vertices_of_faces() {
+    for (std::uint32_t g = 0; g < found_.faces.size(); ++g) {
+      if (found_.faces[g].face == FaceMatch::kNone) continue;
+      for (std::uint32_t i = 0; i < other_.size(g); ++i) {
+        std::uint32_t& v = found_.region_vertex[other_.corners[other_.corner(g, i)]];
+        if (v == kNowhere) v = vertex_at(found_.faces[g], i);
+      }
+    }
+  }
+
+  /// Vertices of new faces only: they are the vertex that lies there, of several the first that survives.
+  void remaining_vertices(const VertexPairs& pairs) {
+    std::vector<std::uint32_t> at(mine_.points.size(), kNowhere);
+    for (const std::uint32_t v : found_.region_vertex)
+      if (v != kNowhere) at[mine_.node[v]] = std::min(at[mine_.node[v]], v);
+    std::vector<std::uint32_t> first(mine_.points.size(), kNowhere);
+    for (const std::uint32_t v : region_.corners) first[mine_.node[v]] = std::min(first[mine_.node[v]], v);
+    for (const std::uint32_t w : other_.corners) {
+      const std::uint32_t node = pairs.from(theirs_.node[w]);
+      if (found_.region_vertex[w] == kNowhere && node != kNowhere)
+        found_.region_vertex[w] = at[node] != kNowhere ? at[node] : first[node];
+    }
+  }
+
+  /// The other mesh may have joined vertices, which then are the first of them only.
+  void drop_joined_faces() {
+    for (std::uint32_t g = 0; g < found_.faces.size(); ++g)
+      for (std::uint32_t i = 0; found_.faces[g].face != FaceMatch::kNone && i < other_.size(g); ++i)
+        if (found_.region_vertex[other_.corners[other_.corner(g, i)]] != vertex_at(found_.faces[g], i))
+          found_.faces[g] = {};
+  }
+
+  Surface region_, other_;
+  WeldedSurface mine_, theirs_;
+  Found found_;
+};
+
+/// Vertices with equal ids on one point are one; so are those on one point that have none.
+Found match_joined(const Surface& region, const WeldedSurface& joined, std::span<const std::uint32_t> named) {
+  std::vector<std::uint32_t> ids(named.empty() ? 0 : joined.points.size(), kNowhere);
+  for (std::size_t w = 0; w < named.size(); ++w) ids[joined.node[w]] = named[w];
+  SurfaceMatch match = match_surfaces(region, joined.surface(), std::move(ids));
+  Found found{{}, joined.node, std::move(match.faces)};
+  for (const std::uint32_t node : joined.node) found.region_vertex.push_back(match.vertices.from(node));
+  return found;
+}
+
+Found match_kept_apart(const Surface& region, const Surface& other, std::span<const std::uint32_t> named) {
+  SurfaceMatch match = match_surfaces(region, other, {named.begin(), named.end()});
+  Found found{std::vector<std::uint32_t>(other.points.size()), std::vector<std::uint32_t>(other.points.size()),
+              std::move(match.faces)};
+  for (std::uint32_t w = 0; w < other.points.size(); ++w) {
+    found.region_vertex[w] = match.vertices.from(w);
+    found.fresh[w] = w;
+  }
+  return found;
+}
+
+/// A file that splits vertices but kept their ids tells those apart that lie on one point.
+Found match(const Surface& region, const OtherMesh& other, std::span<const std::uint32_t> named) {
+  if (!other.splits_vertices) return match_kept_apart(region, other.surface(), named);
+  const auto known =
+      static_cast<std::size_t>(named.size()) - static_cast<std::size_t>(std::ranges::count(named, kNowhere));
+  if (known * 2 > other.points.size()) return match_joined(region, weld_by_place(other.surface(), named), named);
+  return WeldedMatch(region, other.surface()).run();
+}
+
+auto by_position(std::span<const LatticePoint> points) {
+  return [points](std::uint32_t a, std::uint32_t b) { return std::tie(points[a], a) < std::tie(points[b], b); };
+}
+
+/// Pairs vertices without faces: by their ids, by their places, and if as many are left on either side, in order of
+/// position.
+class IsolatedVertices {
+ public:
+  IsolatedVertices(const RegionMesh& region, const RegionFaces& faces, const OtherMesh& other, Found& found)
+      : region_(region),
+        other_(other),
+        found_(found),
+        mine_(isolated_vertices(region.points.size(), faces.vertices())),
+        theirs_(isolated_vertices(other.points.size(), other.corners)),
+        none_at_all_(theirs_.empty()),
+        taken_(region.points.size(), false) {
+    for (const std::uint32_t v : found.region_vertex)
+      if (v != kNowhere) taken_[v] = true;
+    drop_paired();
+  }
+
+  void pair(const std::vector<std::uint32_t>& named) {
+    if (none_at_all_) return;
+    for (const std::uint32_t w : theirs_)
+      if (!named.empty() && named[w] != kNowhere && !taken_[named[w]]) pair(named[w], w);
+    drop_paired();
+    std::ranges::sort(mine_, by_position(region_.points));
+    std::ranges::sort(theirs_, by_position(other_.points));
+    pair_in_place();
+    drop_paired();
+    for (std::size_t i = 0; mine_.size() == theirs_.size() && i < mine_.size(); ++i) pair(mine_[i], theirs_[i]);
+  }
+  /// Those that stay because the other mesh cannot say anything of them.
+  [[nodiscard]] std::span<const std::uint32_t> untold() const {
+    return none_at_all_ ? std::span<const std::uint32_t>(mine_) : std::span<const std::uint32_t>();
+  }
+
+ private:
+  void pair(std::uint32_t v, std::uint32_t w) {
+    found_.region_vertex[w] = v;
+    taken_[v] = true;
+  }
+
+  void drop_paired() {
+    std::erase_if(mine_, [&](std::uint32_t v) { return taken_[v]; });
+    std::erase_if(theirs_, [&](std::uint32_t w) { return found_.region_vertex[w] != kNowhere; });
+  }
+
+  void pair_in_place() {
+    for (std::size_t i = 0, j = 0; i < mine_.size() && j < theirs_.size();) {
+      const auto order = region_.points[mine_[i]] <=> other_.points[theirs_[j]];
+      if (order == 0) pair(mine_[i], theirs_[j]);
+      i += order <= 0;
+      j += order >= 0;
+    }
+  }
+
+  const RegionMesh& region_;
+  const OtherMesh& other_;
+  Found& found_;
+  std::vector<std::uint32_t> mine_, theirs_;
+  bool none_at_all_;
+  std::vector<bool> taken_;
+};
+
+/// Lists the vertices of the edited mesh in the order in which the other mesh first has them.
+RegionMatch listed(const RegionMesh& region, Found found, std::span<const std::uint32_t> untold) {
+  RegionMatch match;
+  std::vector<std::uint32_t> of_region(region.points.size(), kNowhere), fresh(found.fresh.size(), kNowhere);
+  const auto add = [&](std::uint32_t v, std::uint32_t w) {
+    match.vertices.push_back({v, w});
+    return static_cast<std::uint32_t>(match.vertices.size() - 1);
+  };
+  for (std::uint32_t w = 0; w < found.region_vertex.size(); ++w) {
+    const std::uint32_t v = found.region_vertex[w];
+    std::uint32_t& at = v != kNowhere ? of_region[v] : fresh[found.fresh[w]];
+    if (at == kNowhere) at = add(v, w);
+    match.vertex.push_back(at);
+  }
+  for (const std::uint32_t v : untold) of_region[v] = add(v, kNowhere);
+  match.vertices_gone = static_cast<std::uint64_t>(std::ranges::count(of_region, kNowhere));
+  match.faces = std::move(found.faces);
+  return match;
+}
+
+std::uint64_t surviving(const RegionMatch& match) {
+  return static_cast<std::uint64_t>(
+      std::ranges::count_if(match.faces, [](const FaceMatch& m) { return m.face != FaceMatch::kNone; }));
+}
+
+}  // namespace
+
+bool RegionMatch::same_connectivity() const {
+  return !faces_gone && !vertices_gone && surviving(*this) == faces.size() &&
+         std::ranges::none_of(vertices, [](const Vertex& v) { return v.region == kNowhere; });
+}
+
+RegionMatch match_region(const RegionMesh& region, const RegionFaces& faces, const OtherMesh& other) {
+  const std::vector<std::uint32_t> named = vertices_named(region, other.ids);
+  Found found = match({region.points, faces.vertices(), faces.firsts()}, other, named);
+  IsolatedVertices isolated(region, faces, other, found);
+  isolated.pair(named);
+  RegionMatch result = listed(region, std::move(found), isolated.untold());
+  result.faces_gone = faces.count() - surviving(result);
+  return result;
+}
+
+MatchedRegion match_region(const RegionMesh& region, const OtherMesh& other) {
+  const auto matched = [&](bool as_triangles) {
+    MatchedRegion result{RegionFaces(region, as_triangles), {}};
+    result.match = match_region(region, result.faces, other);
+    return result;
+  };
+  const std::size_t count = other.firsts.size() - 1;
+  const bool has_polygons = other.corners.size() != 3 * count;
+  if (has_polygons || region.polygon_sizes.empty()) return matched(false);
+  MatchedRegion triangles = matched(true);
+  if (surviving(triangles.match) == count && count == region.faces.size()) return triangles;
+  MatchedRegion polygons = matched(false);
+  const std::uint64_t found = surviving(triangles.match);
+  return found * 2 >= count && found > surviving(polygons.match) ? std::move(triangles) : std::move(polygons);
+}
+
+}  // namespace ramcdb::detail
