@@ -108,6 +108,7 @@ LoadedChart ChartLoader::decode(const Job& job) const {
     throw Error(Errc::corrupt, "the chart's counts are not those of its index page", place(at_, job.entry),
                 "run `ramcdb verify`");
   for (std::uint32_t i = 0; i < inner; ++i) loaded.keys.push_back({VertexKey::Where::chart, job.entry.id.value, i});
+  for (const auto& [layer, blob] : job.layers) loaded.layer_bytes.emplace(layer, blob.size() + kBlobOverhead);
   try {
     if (at_.record().exact) decode_exact(job, loaded);
     if (job.with_layers) decode_layers(job, loaded);

@@ -24,6 +24,7 @@ struct LoadedChart {
   std::vector<Point> exact;                ///< per local vertex, where the mesh keeps positions to the last bit
   std::vector<codec::LayerValues> layers;  ///< per layer of the mesh, when asked for; those of polygons are empty
   codec::Polygons polygons;                ///< when asked for and the mesh has any
+  std::map<std::uint16_t, std::uint64_t> layer_bytes;  ///< of the layer blobs that were read, checksums included
 };
 
 /// A wire with its decoded points.

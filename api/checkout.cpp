@@ -52,10 +52,7 @@ void refuse_to_overwrite(const std::filesystem::path& file, const FileOptions& o
 struct EditedFile {
   Sidecar sidecar;
   std::vector<std::unique_ptr<Snapshot::Impl>> snapshots;
-  std::vector<RegionPart> parts;
-  RegionMesh region;
-  Edit edit;
-  ChangeReport change;
+  PendingEdit edit;
 };
 
 const db::MeshRoot& root_named(const std::vector<db::MeshRoot>& roots, const std::string& name, VersionId version) {
@@ -77,31 +74,34 @@ EditedFile read_edited_file(const std::shared_ptr<db::Store>& store, const std::
     const auto roots = store->roots(part.version);
     edited.snapshots.push_back(
         std::make_unique<Snapshot::Impl>(store, part.version, root_named(roots, edited.sidecar.mesh, part.version)));
-    edited.parts.push_back({edited.snapshots.back().get(), part.charts});
+    edited.edit.parts.push_back({edited.snapshots.back().get(), part.charts});
   }
-  edited.region = load_region(edited.parts, 1, nullptr, true);
+  PendingEdit& edit = edited.edit;
+  edit.region = load_region(edit.parts, 1, nullptr, true);
   const mesh_file::MeshData data = mesh_file::read_mesh(file);
-  const Snapshot::Impl& at = *edited.parts.front().at;
-  const bool trust_ids = edited.parts.size() == 1 && edited.sidecar.ids_version == at.version();
+  const Snapshot::Impl& at = *edit.parts.front().at;
+  const bool trust_ids = edit.parts.size() == 1 && edited.sidecar.ids_version == at.version();
   try {
-    FileEdit found = edit_in_file(at, edited.region, data, edited.sidecar.local_origin, trust_ids);
-    edited.edit.moves = std::move(found.moves);
-    edited.edit.layers = changed_values(edited.region, at.layers(), found.attributes);
+    edit.edited = edited_in_file(at, edit.region, data, edited.sidecar.local_origin, trust_ids);
+    edit.changes = changes_of(at, edit.region, edit.edited);
   } catch (const Error& e) {
     throw Error(e.code(), fmt::format("{}: {}", file.string(), e.what()));
   }
-  edited.change = describe_edit(edited.region, edited.edit);
   return edited;
 }
 
 /// After a commit the file holds the new version's charts, except those that others changed meanwhile: these it still
 /// holds as they were.
-void move_sidecar_on(EditedFile& edited, const std::filesystem::path& file, VersionId published) {
-  const std::vector<ChartId> others = changed_by_others(edited.parts, published);
+void move_sidecar_on(EditedFile& edited, const std::filesystem::path& file, const CommitReport& report) {
+  const VersionId published = report.revision;
+  const std::vector<ChartId> others = changed_by_others(edited.edit.parts, published);
   std::map<VersionId, std::vector<ChartId>> charts_at;
   for (const Sidecar::Part& part : edited.sidecar.parts)
-    for (const ChartId id : part.charts)
+    for (const ChartId id : part.charts) {
+      if (std::ranges::binary_search(report.removed, id)) continue;
       charts_at[std::binary_search(others.begin(), others.end(), id) ? part.version : published].push_back(id);
+    }
+  for (const ChartId id : report.added) charts_at[published].push_back(id);
   edited.sidecar.parts.clear();
   for (auto& [version, charts] : charts_at) {
     std::sort(charts.begin(), charts.end());
@@ -154,20 +154,19 @@ CheckoutReport export_mesh(const Snapshot& snapshot, const std::filesystem::path
 }
 
 ChangeReport status_of_file(const std::shared_ptr<db::Store>& store, const std::filesystem::path& file) {
-  EditedFile edited = read_edited_file(store, file);
-  compare_with_tip(edited.change, edited.parts, "main");
-  return edited.change;
+  const EditedFile edited = read_edited_file(store, file);
+  ChangeReport report = describe_edit(edited.edit);
+  compare_with_tip(report, edited.edit.parts, "main");
+  return report;
 }
 
 CommitReport commit_file(const std::shared_ptr<db::Store>& store, const std::filesystem::path& file,
                          const CommitOptions& options) {
   const auto start = Clock::now();
   EditedFile edited = read_edited_file(store, file);
-  CommitReport report = commit_edit(edited.parts, edited.change, edited.edit, options,
-                                    attempt_name(edited.sidecar.nonce, options.branch, edited.edit));
-  if (report.conflicts.empty() && !report.nothing_changed) {
-    move_sidecar_on(edited, file, report.revision);
-  }
+  CommitReport report =
+      commit_edit(edited.edit, options, attempt_name(edited.sidecar.nonce, options.branch, edited.edit));
+  if (report.conflicts.empty() && !report.nothing_changed) move_sidecar_on(edited, file, report);
   report.seconds = seconds_since(start);
   return report;
 }

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
-#include <cmath>
 #include <map>
 #include <set>
 
@@ -18,18 +17,6 @@
 
 namespace ramcdb::detail {
 namespace {
-
-double distance(const VertexMove& move) {
-  double sum = 0;
-  for (int a = 0; a < 3; ++a) sum += (move.target[a] - move.position[a]) * (move.target[a] - move.position[a]);
-  return std::sqrt(sum);
-}
-
-const Snapshot::Impl& newest(std::span<const RegionPart> parts) {
-  return *std::max_element(parts.begin(), parts.end(), [](const RegionPart& a, const RegionPart& b) {
-            return a.at->version() < b.at->version();
-          })->at;
-}
 
 const db::MeshRoot* root_of(const std::vector<db::MeshRoot>& roots, MeshId mesh) {
   const auto it = std::find_if(roots.begin(), roots.end(), [&](const db::MeshRoot& r) { return r.mesh == mesh; });
@@ -44,84 +31,43 @@ bool is_work_of(VersionId mine, const ChartState& was, const ChartState& is) {
   return true;
 }
 
-/// The charts that `version` holds in a state other than the region's, or than the one that `mine` wrote.
-std::vector<ChartId> charts_other_than(std::span<const RegionPart> parts, VersionId version, VersionId mine) {
-  const Snapshot::Impl& base = newest(parts);
-  const auto roots = base.store().roots(version);
-  const db::MeshRoot* root = root_of(roots, base.root().mesh);
-  if (!root)
-    throw Error(Errc::conflict, fmt::format("version {} does not hold mesh {}", version.value, base.root().name));
-  const PageIndex there(base.store_handle(), *root);
+ChartState state_in(const PageIndex& pages, ChartId id) {
+  const auto ref = pages.leaf_of(id);
+  return ref ? state_of(*find_chart(*ref->leaf, id)) : ChartState{};
+}
+
+/// The charts that an index holds in a state other than the region's, or than the one that `mine` wrote.
+std::vector<ChartId> charts_other_than(std::span<const RegionPart> parts, const PageIndex& there, VersionId mine) {
   std::vector<ChartId> others;
   for (const RegionPart& part : parts) {
-    if (*root == part.at->root()) continue;
+    if (there.root() == part.at->root()) continue;
     for (const ChartId id : part.charts) {
-      const auto before = part.at->pages().leaf_of(id), now = there.leaf_of(id);
-      const ChartState was = state_of(*find_chart(*before->leaf, id));
-      const ChartState is = now ? state_of(*find_chart(*now->leaf, id)) : ChartState{};
-      if (is != was && !(mine && is_work_of(mine, was, is))) others.push_back(id);
+      const ChartState was = state_in(part.at->pages(), id), is = state_in(there, id);
+      if (is != was && !(mine && (is.empty() || is_work_of(mine, was, is)))) others.push_back(id);
     }
   }
   std::sort(others.begin(), others.end());
   return others;
 }
 
-std::size_t position_of(const std::vector<ChartId>& charts, ChartId id) {
-  return static_cast<std::size_t>(std::lower_bound(charts.begin(), charts.end(), id) - charts.begin());
+const Snapshot::Impl& newest(std::span<const RegionPart> parts) {
+  return *std::max_element(parts.begin(), parts.end(), [](const RegionPart& a, const RegionPart& b) {
+            return a.at->version() < b.at->version();
+          })->at;
 }
 
-CommitReport report_for(const ChangeReport& change, const EncodedEdit& edit) {
-  CommitReport report;
-  report.charts_touched = change.charts_touched.size();
-  report.values_changed = change.values_changed;
-  report.wires_reencoded = static_cast<std::uint64_t>(std::count_if(
-      edit.wires.begin(), edit.wires.end(), [](const auto& w) { return w.second.base.inner_points > 0; }));
-  for (const auto& [id, chart] : edit.charts) {
-    report.charts_reencoded += !chart.blob.empty();
-    report.layers_reencoded += chart.layers.size();
-    report.ranges_expanded += chart.expanded_range;
-  }
-  report.vertices_moved = change.vertices_moved;
-  report.max_displacement = change.max_displacement;
-  return report;
+PageIndex index_at(const Snapshot::Impl& base, VersionId version) {
+  const auto roots = base.store().roots(version);
+  const db::MeshRoot* root = root_of(roots, base.root().mesh);
+  if (!root)
+    throw Error(Errc::conflict, fmt::format("version {} does not hold mesh {}", version.value, base.root().name));
+  return {base.store_handle(), *root};
 }
 
-/// Puts the blobs of an edit and lets the record's totals follow.
-void put_edit(const EncodedEdit& edit, MeshId mesh, db::Writer& writer, MeshRecord& record) {
-  for (const auto& [id, chart] : edit.charts) {
-    for (const RecodedLayer& layer : chart.layers) {
-      record.bytes_of_layer(layer.layer) += layer.blob.size() + kBlobOverhead - layer.bytes_before;
-      writer.put({db::Kind::attribute, mesh, id.value, {}, layer.layer}, layer.blob);
-    }
-    if (chart.blob.empty()) continue;
-    writer.put({db::Kind::chart, mesh, id.value, {}, 0}, chart.blob);
-    record.chart_cost.header += chart.cost.header - chart.cost_before.header;
-    record.chart_cost.connectivity += chart.cost.connectivity - chart.cost_before.connectivity;
-    record.chart_cost.geometry += chart.cost.geometry - chart.cost_before.geometry;
-  }
-  for (const auto& [id, wire] : edit.wires) record.wire_bytes -= wire.bytes_before;
-  for (const auto& [first, group] : edit.wire_groups) {
-    record.wire_bytes += group.size() + kBlobOverhead;
-    writer.put({db::Kind::wire, mesh, first.value, {}, 0}, group);
-  }
-}
-
-/// Puts the tables of another way of coding, and has the record name them.
-void put_coding(const NewCoding& coding, MeshId mesh, db::Writer& writer, MeshRecord& record) {
-  record.profile = coding.profile;
-  record.table = coding.table;
-  record.table_version = coding.table ? writer.version() : VersionId();
-  record.table_bytes -= coding.table_bytes_before;
-  if (!coding.table) return;
-  record.next_table = TableId(coding.table.value + 1);
-  record.table_bytes += coding.tables.size() + kBlobOverhead;
-  writer.put({db::Kind::table, mesh, coding.table.value, {}, 0}, coding.tables);
-}
-
-db::ChangedCharts changed_charts(MeshId mesh, const EncodedEdit& edit) {
-  db::ChangedCharts changed{mesh, {}};
-  for (const auto& [id, chart] : edit.charts) changed.charts.push_back(id);
-  return changed;
+std::vector<ChartId> common(const std::vector<ChartId>& charts, const std::set<ChartId>& others) {
+  std::vector<ChartId> both;
+  std::ranges::set_intersection(charts, others, std::back_inserter(both));
+  return both;
 }
 
 std::string figures_of(const CommitReport& report, std::string_view operation, std::size_t charts) {
@@ -129,170 +75,190 @@ std::string figures_of(const CommitReport& report, std::string_view operation, s
   figures.operation = operation;
   figures.charts_touched = charts;
   figures.vertices_moved = report.vertices_moved;
+  figures.vertices_added = report.vertices_added;
+  figures.vertices_removed = report.vertices_removed;
   figures.max_displacement = report.max_displacement;
   figures.bytes_written = report.bytes_written;
   return encode_figures(figures);
 }
 
-/// How many values changed in each chart; those of shared vertices count in every chart of the region.
-std::map<ChartId, std::uint64_t> values_by_chart(const RegionMesh& region, std::span<const LayerEdit> layers) {
-  std::map<ChartId, std::uint64_t> counts;
-  std::set<std::uint64_t> vertices;
-  for (const LayerEdit& layer : layers) {
-    for (const auto& [chart, values] : layer.in_charts) counts[chart] += values.size();
-    for (const auto& [key, value] : layer.at_vertices) {
-      const VertexKey vertex = VertexKey::unpack(key);
-      if (vertex.where == VertexKey::Where::chart)
-        ++counts[ChartId(vertex.id)];
-      else
-        vertices.insert(key);
+void count_changes(const PendingEdit& edit, CommitReport& report) {
+  const ChangeReport change = describe_edit(edit);
+  report.charts_touched = change.charts_touched.size();
+  report.vertices_moved = change.vertices_moved;
+  report.vertices_added = change.vertices_added;
+  report.vertices_removed = change.vertices_removed;
+  report.faces_added = change.faces_added;
+  report.faces_removed = change.faces_removed;
+  report.values_changed = change.values_changed;
+  report.max_displacement = change.max_displacement;
+}
+
+void count_coded(const EncodedEdit& edit, CommitReport& report) {
+  report.charts_reencoded = edit.charts_reencoded;
+  report.added = edit.added;
+  report.removed.assign(edit.pages.removed.begin(), edit.pages.removed.end());
+  report.charts_added = report.added.size();
+  report.charts_removed = report.removed.size();
+  report.wires_reencoded = edit.wires_reencoded;
+  report.layers_reencoded = edit.layers_reencoded;
+  report.ranges_expanded = edit.ranges_expanded;
+}
+
+/// Puts all that a version writes, and says where the mesh then stands.
+db::MeshRoot put_edit(const Snapshot::Impl& tip, EncodedEdit& edit, db::Writer& writer) {
+  MeshRecord& record = edit.record;
+  if (record.table && !record.table_version) record.table_version = writer.version();
+  if (edit.new_layer_table) record.layers = writer.version();
+  for (EncodedEdit::Blob& blob : edit.blobs) writer.put(blob.key, std::move(blob.bytes));
+  const db::MeshRoot root = rewrite_pages(tip.pages(), edit.pages, writer, record);
+  writer.put({db::Kind::mesh_record, root.mesh, 1, {}, 0}, encode_record(record));
+  return root;
+}
+
+/// One version of one mesh on the tip of a branch.
+class TipPublisher {
+ public:
+  TipPublisher(const std::shared_ptr<db::Store>& store, MeshId mesh, const CommitOptions& options,
+               std::string_view operation, const std::string& attempt,
+               const std::function<std::optional<EncodedEdit>(const Snapshot::Impl&)>& encode, CommitReport& report)
+      : store_(store),
+        mesh_(mesh),
+        options_(options),
+        operation_(operation),
+        attempt_(attempt),
+        encode_(encode),
+        report_(report) {}
+
+  void run() {
+    constexpr int kTriesWithoutLock = 2;
+    for (int tries = 0;; ++tries) {
+      const auto lock = tries < kTriesWithoutLock ? nullptr : store_->writer();
+      const Snapshot::Impl tip = snapshot_of(lock ? lock->tip(options_.branch) : store_->resolve(options_.branch));
+      std::optional<EncodedEdit> edit = encode_(tip);
+      if (!edit) return;
+      count_coded(*edit, report_);
+      if (publish(tip, *edit, lock ? *lock : *store_->writer())) return;
     }
   }
-  if (vertices.empty()) return counts;
-  std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
-  for (std::size_t f = 0; f < region.faces.size(); ++f)
-    for (const std::uint32_t v : region.faces[f])
-      if (vertices.contains(region.keys[v].packed()) && seen.insert({region.chart_of_face[f], v}).second)
-        ++counts[region.charts[region.chart_of_face[f]]];
-  return counts;
+
+ private:
+  [[nodiscard]] Snapshot::Impl snapshot_of(VersionId version) const {
+    const auto roots = store_->roots(version);
+    if (const db::MeshRoot* root = root_of(roots, mesh_)) return {store_, version, *root};
+    throw Error(Errc::conflict, fmt::format("branch {} does not hold the mesh", options_.branch),
+                fmt::format("version {}", version.value), "commit to the branch that you checked out from");
+  }
+
+  /// False when the tip moved.
+  bool publish(const Snapshot::Impl& tip, EncodedEdit& edit, db::Writer& writer) const {
+    if (writer.tip(options_.branch) != tip.version()) return false;
+    db::CommitInfo info;
+    info.roots = store_->roots(tip.version());
+    const db::MeshRoot moved = put_edit(tip, edit, writer);
+    for (db::MeshRoot& root : info.roots)
+      if (root.mesh == moved.mesh) root = moved;
+    info.branch = options_.branch;
+    info.expected_tip = tip.version();
+    info.parents = {tip.version()};
+    info.author = options_.author;
+    info.message = options_.message;
+    info.attempt = attempt_;
+    info.changed = {{mesh_, edit.changed}};
+    report_.parent = tip.version();
+    report_.bytes_written = writer.bytes_put();
+    info.figures = figures_of(report_, operation_, edit.changed.size());
+    report_.revision = writer.publish(info);
+    return true;
+  }
+
+  const std::shared_ptr<db::Store>& store_;
+  MeshId mesh_;
+  const CommitOptions& options_;
+  std::string_view operation_;
+  const std::string& attempt_;
+  const std::function<std::optional<EncodedEdit>(const Snapshot::Impl&)>& encode_;
+  CommitReport& report_;
+};
+
+/// The charts that an edit touches, as a tip has them, and the edit of these.
+EncodedEdit encode_on(const Snapshot::Impl& tip, const PendingEdit& edit, unsigned threads) {
+  const RegionPart part{&tip, {edit.changes.touched.begin(), edit.changes.touched.end()}};
+  RegionMesh region = load_region(std::span(&part, 1), threads, nullptr, true);
+  EditedRegion edited = transferred(edit.edited, edit.region, region);
+  const auto may_recut = [&](ChartId id) {
+    return edit.may_recut_outside || std::ranges::binary_search(edit.region.charts, id);
+  };
+  return encode_edit(tip, std::move(region), std::move(edited), may_recut, threads);
 }
 
 }  // namespace
 
-ChangeReport describe_edit(const RegionMesh& region, const Edit& edit) {
-  const std::vector<VertexMove>& moves = edit.moves;
-  ChangeReport report;
-  std::map<std::uint64_t, const VertexMove*> by_key;
-  double squares = 0;
-  for (const VertexMove& move : moves) {
-    by_key.emplace(move.key.packed(), &move);
-    const double d = distance(move);
-    report.max_displacement = std::max(report.max_displacement, d);
-    squares += d * d;
-  }
-  report.vertices_moved = moves.size();
-  if (!moves.empty()) report.rms_displacement = std::sqrt(squares / static_cast<double>(moves.size()));
-
-  std::vector<const VertexMove*> move_of(region.keys.size(), nullptr);
-  if (!moves.empty())
-    for (std::size_t v = 0; v < region.keys.size(); ++v)
-      if (const auto it = by_key.find(region.keys[v].packed()); it != by_key.end()) {
-        move_of[v] = it->second;
-        report.border_vertices_moved += region.outer_border[v];
-      }
-  std::vector<std::set<std::uint32_t>> moved_in(region.charts.size());
-  for (std::size_t f = 0; f < region.faces.size(); ++f)
-    for (const std::uint32_t v : region.faces[f])
-      if (move_of[v]) moved_in[region.chart_of_face[f]].insert(v);
-  for (std::uint32_t v = 0; v < region.keys.size(); ++v)  // isolated vertices are in no face
-    if (move_of[v] && region.keys[v].where == VertexKey::Where::chart)
-      moved_in[position_of(region.charts, ChartId(region.keys[v].id))].insert(v);
-  const std::map<ChartId, std::uint64_t> values = values_by_chart(region, edit.layers);
-  for (const LayerEdit& layer : edit.layers) report.values_changed += layer.count();
-  for (std::size_t c = 0; c < region.charts.size(); ++c) {
-    const auto changed = values.find(region.charts[c]);
-    if (moved_in[c].empty() && changed == values.end()) continue;
-    ChangeReport::ChartChange change{region.charts[c], moved_in[c].size(), 0,
-                                     changed == values.end() ? 0 : changed->second};
-    for (const std::uint32_t v : moved_in[c])
-      change.max_displacement = std::max(change.max_displacement, distance(*move_of[v]));
-    report.per_chart.push_back(change);
-    report.charts_touched.push_back(region.charts[c]);
-  }
-  return report;
-}
+const Snapshot::Impl& PendingEdit::base() const { return newest(parts); }
 
 void compare_with_tip(ChangeReport& report, std::span<const RegionPart> parts, std::string_view branch) {
   const Snapshot::Impl& base = newest(parts);
   report.base = base.version();
   report.tip = base.store().resolve(branch);
-  report.changed_by_others = charts_other_than(parts, report.tip, {});
-  std::set_intersection(report.changed_by_others.begin(), report.changed_by_others.end(), report.charts_touched.begin(),
-                        report.charts_touched.end(), std::back_inserter(report.conflicts));
+  report.changed_by_others = charts_other_than(parts, index_at(base, report.tip), {});
+  report.conflicts = common(report.changed_by_others, {report.charts_touched.begin(), report.charts_touched.end()});
 }
 
 std::vector<ChartId> changed_by_others(std::span<const RegionPart> parts, VersionId version) {
-  return charts_other_than(parts, version, version);
+  return charts_other_than(parts, index_at(newest(parts), version), version);
 }
 
-std::string attempt_name(std::string_view nonce, std::string_view branch, const Edit& edit) {
+std::string attempt_name(std::string_view nonce, std::string_view branch, const PendingEdit& edit) {
   XXH3_state_t state;
   XXH3_128bits_reset(&state);
-  XXH3_128bits_update(&state, nonce.data(), nonce.size());
-  XXH3_128bits_update(&state, branch.data(), branch.size());
-  const auto add = [&](std::uint64_t number) { XXH3_128bits_update(&state, &number, sizeof number); };
-  const auto add_value = [&](const CodedValue& value) {
-    add(value.absent);
-    for (const std::uint64_t number : value.numbers) add(number);
+  const auto add_bytes = [&](const void* data, std::size_t size) { XXH3_128bits_update(&state, data, size); };
+  const auto add = [&](std::uint64_t number) { add_bytes(&number, sizeof number); };
+  const auto add_all = [&](const auto& items) {
+    add(items.size());
+    add_bytes(items.data(), items.size() * sizeof items[0]);
   };
-  for (const VertexMove& move : edit.moves) {
-    add(move.key.packed());
-    for (int axis = 0; axis < 3; ++axis) add(std::bit_cast<std::uint64_t>(move.target[axis]));
-  }
-  for (const LayerEdit& layer : edit.layers) {
-    add(layer.layer.id);
-    for (const auto& [key, value] : layer.at_vertices) add(key), add_value(value);
-    for (const auto& [chart, values] : layer.in_charts)
-      for (const auto& [index, value] : values) add(chart.value), add(index), add_value(value);
-  }
+  add_bytes(nonce.data(), nonce.size());
+  add_bytes(branch.data(), branch.size());
+  const RegionMesh& mesh = edit.edited.mesh;
+  add_all(edit.edited.vertex_source);
+  add_all(edit.edited.face_source);
+  add_all(mesh.points);
+  add_all(mesh.exact);
+  add_all(mesh.faces);
+  add_all(mesh.polygon_corners);
+  for (const Attribute& attribute : mesh.attributes) add_all(attribute.values);
   const XXH128_hash_t hash = XXH3_128bits_digest(&state);
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
-void publish_edit(const Snapshot::Impl& base, const EncodedEdit& edit, const CommitOptions& options,
-                  std::string_view operation, const std::string& attempt, CommitReport& report) {
-  const auto writer = base.store().writer();
-  const VersionId tip = writer->tip(options.branch);
-  db::CommitInfo info;
-  info.roots = base.store().roots(tip);
-  const db::MeshRoot* found = root_of(info.roots, base.root().mesh);
-  if (!found)
-    throw Error(Errc::conflict, fmt::format("mesh {} is not on branch {}", base.root().name, options.branch),
-                fmt::format("version {}", tip.value), "commit to the branch that you checked out from");
-  const Snapshot::Impl at_tip(base.store_handle(), tip, *found);
-  report.conflicts = find_conflicts(at_tip.pages(), edit);
-  if (!report.conflicts.empty()) return;
-
-  MeshRecord record = at_tip.record();
-  put_edit(edit, base.root().mesh, *writer, record);
-  if (edit.coding) put_coding(*edit.coding, base.root().mesh, *writer, record);
-  const db::MeshRoot moved = rewrite_pages(at_tip.pages(), edit, *writer, record);
-  writer->put({db::Kind::mesh_record, base.root().mesh, 1, {}, 0}, encode_record(record));
-  for (db::MeshRoot& root : info.roots)
-    if (root.mesh == moved.mesh) root = moved;
-  info.branch = options.branch;
-  info.expected_tip = tip;
-  info.parents = {tip};
-  info.author = options.author;
-  info.message = options.message;
-  info.attempt = attempt;
-  info.changed = {changed_charts(base.root().mesh, edit)};
-  report.parent = tip;
-  report.bytes_written = writer->bytes_put();
-  info.figures = figures_of(report, operation, edit.charts.size());
-  report.revision = writer->publish(info);
+void publish_on_tip(const std::shared_ptr<db::Store>& store, MeshId mesh, const CommitOptions& options,
+                    std::string_view operation, const std::string& attempt,
+                    const std::function<std::optional<EncodedEdit>(const Snapshot::Impl& tip)>& encode,
+                    CommitReport& report) {
+  TipPublisher(store, mesh, options, operation, attempt, encode, report).run();
 }
 
-CommitReport commit_edit(std::span<const RegionPart> parts, const ChangeReport& change, const Edit& edit,
-                         const CommitOptions& options, const std::string& attempt) {
+CommitReport commit_edit(const PendingEdit& edit, const CommitOptions& options, const std::string& attempt) {
   const auto start = std::chrono::steady_clock::now();
-  const Snapshot::Impl& base = newest(parts);
+  const Snapshot::Impl& base = edit.base();
   CommitReport report;
-  if (edit.empty()) {
+  count_changes(edit, report);
+  if (edit.changes.empty()) {
     report.nothing_changed = true;
     report.revision = report.parent = base.version();
   } else if (const auto published = base.store().published_by(attempt)) {
     report.revision = *published;
-    report.vertices_moved = change.vertices_moved;
-    report.values_changed = change.values_changed;
-    report.max_displacement = change.max_displacement;
-    report.charts_touched = change.charts_touched.size();
     const auto parents = base.store().version(*published).parents;
     if (!parents.empty()) report.parent = parents.front();
   } else {
-    const EncodedEdit encoded = encode_edit(parts, edit, options.threads);
-    report = report_for(change, encoded);
-    publish_edit(base, encoded, options, "commit", attempt, report);
+    publish_on_tip(
+        base.store_handle(), base.root().mesh, options, "commit", attempt,
+        [&](const Snapshot::Impl& tip) -> std::optional<EncodedEdit> {
+          report.conflicts = common(charts_other_than(edit.parts, tip.pages(), {}), edit.changes.touched);
+          if (!report.conflicts.empty()) return std::nullopt;
+          return encode_on(tip, edit, options.threads);
+        },
+        report);
   }
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;

@@ -1,20 +1,35 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "api/edit_encoder.h"
+#include "api/region_mesh.h"
 #include "ramcdb/figures.h"
 #include "ramcdb/repository.h"
 
 namespace ramcdb::detail {
 
-/// What an edit means, before anything is coded.
-[[nodiscard]] ChangeReport describe_edit(const RegionMesh& region, const Edit& edit);
+/// An edit as it waits to be committed.
+struct PendingEdit {
+  std::vector<RegionPart> parts;  ///< what `region` was loaded from
+  RegionMesh region;              ///< with attributes
+  EditedRegion edited;
+  ChangeSet changes;
+  /// Whether charts outside the region may be cut anew where an edit leaves too small a one beside them.
+  bool may_recut_outside = false;
 
-/// Fills in tip, changed_by_others and conflicts of a report on moves in `parts`, against the tip of `branch`.
+  /// The newest version of its parts.
+  [[nodiscard]] const Snapshot::Impl& base() const;
+};
+
+/// What an edit means, before anything is coded.
+[[nodiscard]] ChangeReport describe_edit(const PendingEdit& edit);
+
+/// Fills in tip, changed_by_others and conflicts of a report, against the tip of `branch`.
 void compare_with_tip(ChangeReport& report, std::span<const RegionPart> parts, std::string_view branch);
 
 /// The charts of a region that `version` holds in another state than the region does, and that `version` did not write
@@ -22,17 +37,22 @@ void compare_with_tip(ChangeReport& report, std::span<const RegionPart> parts, s
 [[nodiscard]] std::vector<ChartId> changed_by_others(std::span<const RegionPart> parts, VersionId version);
 
 /// The name of an attempt: the same edit of the same checkout has one name, however often it is sent.
-[[nodiscard]] std::string attempt_name(std::string_view nonce, std::string_view branch, const Edit& edit);
+[[nodiscard]] std::string attempt_name(std::string_view nonce, std::string_view branch, const PendingEdit& edit);
 
-/// Steps 1 to 6 of the commit protocol (db/FORMAT.md), with the writer's lock held throughout: puts an edit that was
-/// coded on `base` on top of the branch's tip. Conflicts come back in the report, with nothing written.
+/// Codes the edit on the branch's tip and publishes it (the commit protocol: db/FORMAT.md), again where the tip moves
+/// meanwhile. Nothing changed: nothing is written. Conflicts come back in the report, with nothing written.
+/// \param attempt from attempt_name(): a repeated commit is one commit.
+[[nodiscard]] CommitReport commit_edit(const PendingEdit& edit, const CommitOptions& options,
+                                       const std::string& attempt);
+
+/// A version of one mesh that is made from the tip of a branch: coded without the writer's lock, and with it where the
+/// tip moved twice meanwhile, so that it comes to an end.
 /// \param operation what the version's figures call it
-void publish_edit(const Snapshot::Impl& base, const EncodedEdit& edit, const CommitOptions& options,
-                  std::string_view operation, const std::string& attempt, CommitReport& report);
-
-/// Codes the edit, decides against the branch's tip and publishes. Nothing changed: nothing is written. Conflicts come
-/// back in the report, with nothing written. \param attempt from attempt_name(): a repeated commit is one commit.
-[[nodiscard]] CommitReport commit_edit(std::span<const RegionPart> parts, const ChangeReport& change, const Edit& edit,
-                                       const CommitOptions& options, const std::string& attempt);
+/// \param encode makes the edit from a tip; none when there is nothing to publish
+/// \param report gets the version; counts of the edit for the version's figures are there before
+void publish_on_tip(const std::shared_ptr<db::Store>& store, MeshId mesh, const CommitOptions& options,
+                    std::string_view operation, const std::string& attempt,
+                    const std::function<std::optional<EncodedEdit>(const Snapshot::Impl& tip)>& encode,
+                    CommitReport& report);
 
 }  // namespace ramcdb::detail

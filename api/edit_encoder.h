@@ -2,88 +2,46 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <optional>
-#include <span>
-#include <unordered_map>
 #include <vector>
 
-#include "api/chart_loader.h"
-#include "api/layer_edit.h"
-#include "api/region_mesh.h"
+#include "api/change_set.h"
+#include "api/layers.h"
+#include "api/mesh_record.h"
+#include "api/page_delta.h"
+#include "codec/tables.h"
+#include "db/store.h"
 
 namespace ramcdb::detail {
 
-/// Where a vertex goes. In a lossless mesh it may go less than a lattice step.
-struct VertexMove {
-  VertexKey key;
-  LatticePoint from, to;
-  Point position, target;  ///< model units; of other meshes those of `from` and `to`
-
-  friend bool operator==(const VertexMove&, const VertexMove&) = default;
-};
-
-/// The move of a vertex of a region to `p`; none when the mesh would keep it where it is. Throws invalid_argument and
-/// limit_exceeded for places that the mesh's lattice does not have.
-[[nodiscard]] std::optional<VertexMove> move_to(const Snapshot::Impl& at, const RegionMesh& region, std::size_t vertex,
-                                                const Point& p);
-
-struct RecodedLayer {
-  std::uint16_t layer = 0;
-  Buffer blob;
-  std::uint64_t bytes_before = 0;  ///< checksum included
-};
-
-/// A chart of which something was coded anew, and what it was decided on.
-struct RecodedChart {
-  PageChart base;  ///< as it stood: the tip must still have this very state
-  PageChart entry;
-  Buffer blob;  ///< empty when its geometry stays
-  codec::ChartCost cost_before, cost;
-  bool expanded_range = false;
-  std::vector<RecodedLayer> layers;
-};
-
-struct RecodedWire {
-  PageWire base;
-  WireId group;  ///< the first wire in the blob with its new points
-  Wire wire;
-  std::uint64_t bytes_before = 0;  ///< its share of the blob that it was in, checksum included
-};
-
-/// Another way of coding all charts of a mesh.
-struct NewCoding {
-  codec::Profile profile = codec::Profile::dense;
-  TableId table;                         ///< 0: the built-in tables
-  Buffer tables;                         ///< the blob of that table
-  std::uint64_t table_bytes_before = 0;  ///< of the mesh's own table, checksum included; 0 without
-};
-
-/// An edit, coded and ready to be placed on any version that still holds what it was decided on.
+/// An edit, coded on top of one version: all that a version over it writes.
 struct EncodedEdit {
-  std::map<ChartId, RecodedChart> charts;
-  std::map<WireId, RecodedWire> wires;
-  std::map<WireId, Buffer> wire_groups;  ///< the blobs with their points, by first wire
-  std::map<CornerId, LatticePoint> corners;
-  std::optional<NewCoding> coding;  ///< then `charts` are all that the mesh has
-};
+  struct Blob {
+    db::BlobKey key;  ///< its version is that of the writer
+    Buffer bytes;
+  };
+  std::vector<Blob> blobs;  ///< charts, layers, wires, tables
+  PageDelta pages;
+  /// Of the new version, but for its pages' bytes and ids. A table is the new version's where `table_version` is 0.
+  MeshRecord record;
+  bool new_layer_table = false;
 
-/// What an edit changes.
-struct Edit {
-  std::vector<VertexMove> moves;
-  std::vector<LayerEdit> layers;
-
-  [[nodiscard]] bool empty() const { return moves.empty() && layers.empty(); }
+  // For reports.
+  std::vector<ChartId> changed;  ///< charts of which something is written, and those that go; ascending
+  std::vector<ChartId> added;    ///< of them, new ones
+  std::uint64_t charts_reencoded = 0;
+  std::uint64_t wires_reencoded = 0, layers_reencoded = 0, ranges_expanded = 0;
 };
 
 /// Codes the charts and wires that an edit touches. A moved inner vertex touches its chart; a point of a wire, the wire
 /// and every chart on it; a corner, all wires that end there and all charts around it, also those outside the region,
 /// whose other vertices stay; the exact positions of a lossless mesh follow its charts. A changed value touches its
-/// layer in the same charts, and nothing else. No connectivity changes, so wires, corners and loops keep their ids.
-/// Layers follow connectivity, so they stay when vertices move; only where a component has no border to begin at may
-/// another order of its faces make them new.
-/// \param parts the region that the keys belong to; keys of one part's charts refer to its version.
-[[nodiscard]] EncodedEdit encode_edit(std::span<const RegionPart> parts, const Edit& edit, unsigned threads);
+/// layer in the same charts, and nothing else. Charts whose connectivity changes are cut anew, between the wires that
+/// other charts share with them (recut_encoder.h).
+/// \param region charts of `at`, with attributes: all that the edit touches
+/// \param may_recut whether a chart outside `region` may be cut anew where the edit leaves too small a one beside it
+[[nodiscard]] EncodedEdit encode_edit(const Snapshot::Impl& at, RegionMesh region, EditedRegion edited,
+                                      const std::function<bool(ChartId)>& may_recut, unsigned threads);
 
 /// Codes all charts of a mesh anew with other tables, in any profile; what charts hold stays as it is. Layers are coded
 /// anew where their order follows that of the chart's vertices or faces. `progress` gets the share that is done.

@@ -45,8 +45,8 @@ void pair_by_geometry(MatchState& state, std::vector<std::uint32_t> ids) {
 std::uint64_t changes(const MatchState& state, const VertexPairs& pairs) {
   std::uint64_t count = 0;
   for (std::uint32_t w = 0; w < state.to.points.size(); ++w)
-    count +=
-        state.to_rings.degree(w) && (pairs.from(w) == kNowhere || state.places.from[pairs.from(w)] != state.places.to[w]);
+    count += state.to_rings.degree(w) &&
+             (pairs.from(w) == kNowhere || state.places.from[pairs.from(w)] != state.places.to[w]);
   for (std::uint32_t v = 0; v < state.from.points.size(); ++v)
     count += state.from_rings.degree(v) && pairs.to(v) == kNowhere;
   return count;

@@ -73,18 +73,17 @@ class Converter {
 
 }  // namespace
 
-std::vector<Attribute> attributes_in_file(const RegionMesh& region, const RegionFaces& faces,
-                                          const mesh_file::MeshData& file, const FilePlaces& places) {
-  std::vector<Attribute> edited = region.attributes;
-  const std::vector<std::uint32_t> file_corners = faces.file_corners(), file_faces = faces.file_faces();
+std::uint64_t take_values(const mesh_file::MeshData& file, const FilePlaces& places, RegionMesh& mesh) {
+  std::uint64_t missing = 0;
   const auto place_of = [&](AttributeOf of, AttributeOf given, std::size_t at) {
     if (of == AttributeOf::vertex) return places.vertices[at];
-    if (of == AttributeOf::face) return places.faces[file_faces[at]];
-    const std::uint32_t corner = places.corners[file_corners[at]];
-    return given == AttributeOf::vertex ? file.corners[corner] : corner;
+    if (of == AttributeOf::face) return places.faces[at];
+    const std::uint32_t corner = places.corners[at];
+    return given == AttributeOf::vertex && corner != kNone ? file.corners[corner] : corner;
   };
-  for (Attribute& attribute : edited) {
+  for (Attribute& attribute : mesh.attributes) {
     const Attribute* given = find_in(file, attribute.info);
+    missing += given == nullptr;
     if (!given) continue;
     const Converter convert(given->info, attribute.info);
     const std::size_t components = attribute.info.components, theirs = given->info.components;
@@ -95,7 +94,7 @@ std::vector<Attribute> attributes_in_file(const RegionMesh& region, const Region
         attribute.values[at * components + k] = convert(given->values[place * theirs + k]);
     }
   }
-  return edited;
+  return missing;
 }
 
 }  // namespace ramcdb::detail

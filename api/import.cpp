@@ -95,8 +95,7 @@ void note_encoding(MeshRecord& record, const EncodedMesh& encoded) {
   record.next_corner = CornerId(static_cast<std::uint32_t>(record.corners + 1));
   for (const auto& [first, group] : encoded.wires) record.wire_bytes += group.size() + kBlobOverhead;
   for (const auto& chart : encoded.layers)
-    for (const LayerSource::Blob& layer : chart)
-      record.bytes_of_layer(layer.layer) += layer.bytes.size() + kBlobOverhead;
+    for (const LayerBlob& layer : chart) record.bytes_of_layer(layer.layer) += layer.bytes.size() + kBlobOverhead;
 }
 
 /// The layer table has a key of its own among the layers: chart 0.
@@ -108,7 +107,7 @@ void put_layers(db::Writer& writer, MeshId mesh, EncodedMesh& encoded, const Lay
     writer.put({db::Kind::attribute, mesh, 0, {}, 0}, std::move(blob));
   }
   for (std::uint32_t c = 0; c < encoded.layers.size(); ++c)
-    for (LayerSource::Blob& layer : encoded.layers[c])
+    for (LayerBlob& layer : encoded.layers[c])
       writer.put({db::Kind::attribute, mesh, c + 1, {}, layer.layer}, std::move(layer.bytes));
 }
 

@@ -2,12 +2,12 @@
 
 #include <vector>
 
+#include "api/layer_encoder.h"
 #include "api/layers.h"
 #include "api/mesh_file/mesh_file.h"
 #include "api/mesh_record.h"
 #include "chartify/wire_net_builder.h"
 #include "codec/chart_codec.h"
-#include "codec/polygon_codec.h"
 
 namespace ramcdb::detail {
 
@@ -23,27 +23,19 @@ class LayerSource {
   /// Per canonical face the file's face that it was cut from; empty when all of them are triangles.
   [[nodiscard]] std::vector<std::uint32_t> polygon_of_face() const;
 
-  struct Blob {
-    std::uint16_t layer;
-    Buffer bytes;
-  };
   /// The layer blobs of a chart, ascending. Charts of triangles alone need none for polygons.
-  [[nodiscard]] std::vector<Blob> encode(const chartify::NetChart& chart, const codec::EncodedChart& encoded) const;
+  [[nodiscard]] std::vector<LayerBlob> encode(const chartify::NetChart& chart,
+                                              const codec::EncodedChart& encoded) const;
 
  private:
-  struct Places;
-  [[nodiscard]] Places places_in_file(const chartify::NetChart& chart, const codec::EncodedChart& encoded) const;
-  [[nodiscard]] Buffer exact(const codec::EncodedChart& encoded, const Places& places) const;
-  [[nodiscard]] codec::LayerValues values(const Layer& layer, const Attribute& attribute, const Places& places) const;
-  [[nodiscard]] codec::Polygons polygons(const Places& places) const;
+  [[nodiscard]] LayerPlaces places_in_file(const chartify::NetChart& chart, const codec::EncodedChart& encoded) const;
 
   const mesh_file::MeshData& data_;
   const mesh_file::Triangulation& cut_;
   const chartify::CanonicalMesh& mesh_;
-  const MeshRecord& record_;
-  const std::vector<Point>& exact_;
   std::vector<std::uint8_t> turns_;  ///< canonical corner i of a face is corner (i + turn) % 3 of its triangle
   LayerTable table_;
+  LayerEncoder encoder_;
 };
 
 }  // namespace ramcdb::detail

@@ -114,7 +114,7 @@ EncodedMesh encode_mesh(const chartify::IndexedMesh& mesh, const chartify::WireN
         out.charts[c] = std::move(encoded.blob);
         costs[c] = encoded.cost;
         out.chart_entries[c] = chart_entry(net.charts[c], static_cast<std::uint32_t>(c), record.table);
-        for (const LayerSource::Blob& blob : out.layers[c]) out.chart_entries[c].layers.push_back({blob.layer, {}});
+        for (const LayerBlob& blob : out.layers[c]) out.chart_entries[c].layers.push_back({blob.layer, {}});
       },
       progress);
   for (const codec::ChartCost& cost : costs) {

@@ -16,8 +16,8 @@ namespace ramcdb::detail {
 /// All blobs of a new mesh but its pages, with the ids that they get: position in the wire-net + 1.
 struct EncodedMesh {
   std::vector<Buffer> charts;
-  std::map<WireId, Buffer> wires;                      ///< groups, by their first wire
-  std::vector<std::vector<LayerSource::Blob>> layers;  ///< per chart
+  std::map<WireId, Buffer> wires;              ///< groups, by their first wire
+  std::vector<std::vector<LayerBlob>> layers;  ///< per chart
   std::vector<PageChart> chart_entries;
   std::vector<PageWire> wire_entries;
   std::vector<PageCorner> corner_entries;

@@ -1,18 +1,16 @@
 #pragma once
 
-#include "api/edit_encoder.h"
 #include "api/mesh_record.h"
+#include "api/page_delta.h"
 #include "api/page_index.h"
 #include "db/store.h"
 
 namespace ramcdb::detail {
 
-/// Charts of an edit that the tip no longer holds as the edit found them.
-[[nodiscard]] std::vector<ChartId> find_conflicts(const PageIndex& tip, const EncodedEdit& edit);
-
-/// Writes new leaf pages for all that an edit touches and new pages above them, up to the root. Pages that hold nothing
-/// of it stay. REQUIRES: no conflicts. `record.page_bytes` follows. Returns the new root.
-[[nodiscard]] db::MeshRoot rewrite_pages(const PageIndex& tip, const EncodedEdit& edit, db::Writer& writer,
+/// Writes new leaf pages for all that `delta` touches and new pages above them, up to the root. Pages that hold nothing
+/// of it stay. Pages that got too large are split, small ones joined with a neighbour. `record.page_bytes` and
+/// `record.next_page` follow. Returns the new root. REQUIRES: the mesh keeps a chart.
+[[nodiscard]] db::MeshRoot rewrite_pages(const PageIndex& tip, const PageDelta& delta, db::Writer& writer,
                                          MeshRecord& record);
 
 }  // namespace ramcdb::detail

@@ -61,6 +61,8 @@ Patch::Patch(const Snapshot& snapshot, RegionMesh region)
   mesh_.add_property(key_, "ramcdb:key");
   mesh_.add_property(chart_, "ramcdb:chart");
   mesh_.add_property(region_vertex_, "ramcdb:region_vertex");
+  mesh_.add_property(region_face_, "ramcdb:region_face");
+  copied_.resize(region_.points.size(), false);
   const auto add_vertex = [&](std::uint32_t v) {
     const Point p = base_.position(region_, v);
     const auto handle = mesh_.add_vertex({p.x, p.y, p.z});
@@ -74,6 +76,7 @@ Patch::Patch(const Snapshot& snapshot, RegionMesh region)
   std::vector<bool> present(region_.points.size(), false);
   const auto copy_of = [&](std::uint32_t v) {
     copies_ += present[v];
+    copied_[v] = copied_[v] || present[v];
     present[v] = true;
     return add_vertex(v);
   };
@@ -91,6 +94,7 @@ Patch::Patch(const Snapshot& snapshot, RegionMesh region)
       face = mesh_.add_face(corners);
     }
     mesh_.property(chart_, face) = region_.charts[region_.chart_of_face[f]].value;
+    mesh_.property(region_face_, face) = f + 1;
   }
   for (std::uint32_t v = 0; v < region_.points.size(); ++v)
     if (!present[v]) add_vertex(v);
@@ -103,7 +107,7 @@ Attribute* Patch::attribute(std::string_view name) {
 }
 
 bool Patch::on_outer_border(Mesh::VertexHandle v) const {
-  return region_.outer_border[mesh_.property(region_vertex_, v)];
+  return mesh_.property(key_, v) != 0 && region_.outer_border[mesh_.property(region_vertex_, v)];
 }
 
 }  // namespace ramcdb

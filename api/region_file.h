@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "api/edit_encoder.h"
+#include "api/edited_region.h"
 #include "api/mesh_file/mesh_file.h"
 #include "api/region_mesh.h"
 #include "ramcdb/repository.h"
@@ -20,19 +20,12 @@ struct WrittenRegion {
                                          const std::filesystem::path& file, const FileOptions& options, bool with_ids,
                                          bool may_shift);
 
-/// What an edited file says about a region.
-struct FileEdit {
-  std::vector<VertexMove> moves;
-  /// As the region's, with the file's values where it has any; empty when it has none.
-  std::vector<Attribute> attributes;
-};
-
-/// Compares a file with the region that it was written from. It holds the same faces as the region (its polygons, or
-/// the triangles that these are kept as), in any order, with any vertex numbering, as a soup or with split vertices.
-/// Attributes are found by their names, or else by what they mean; those that the file lacks stay, and what it has in
-/// addition is no edit. Throws invalid_argument, with places, when its connectivity differs.
-/// \param trust_ids vertex ids in the file refer to this very region.
-[[nodiscard]] FileEdit edit_in_file(const Snapshot::Impl& at, const RegionMesh& region, const mesh_file::MeshData& file,
-                                    const Point& local_origin, bool trust_ids);
+/// What an edited file makes of the region that it was written from. Faces and vertices are recognized whatever a
+/// program did to them in between (region_match.h); what is not is new. Attributes are found by their names, or else by
+/// what they mean; those that the file lacks stay, new vertices and faces then have values from the surface that was
+/// there, and what the file has in addition is no edit. Throws invalid_argument for positions that the lattice does not
+/// have. \param trust_ids vertex ids in the file refer to this very region.
+[[nodiscard]] EditedRegion edited_in_file(const Snapshot::Impl& at, const RegionMesh& region,
+                                          const mesh_file::MeshData& file, const Point& local_origin, bool trust_ids);
 
 }  // namespace ramcdb::detail

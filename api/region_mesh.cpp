@@ -1,9 +1,11 @@
 #include "api/region_mesh.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
+#include <map>
 #include <optional>
-#include <unordered_set>
+#include <set>
 
 #include "ramcdb/error.h"
 
@@ -24,21 +26,33 @@ VertexKey VertexKey::unpack(std::uint64_t packed) {
 namespace detail {
 namespace {
 
-/// Gives every key its vertex of the region.
+/// Gives every key its vertex of the region. A wire that was cut between two versions has several names: where charts
+/// of several versions meet, a vertex is known by its place as well.
 class VertexTable {
  public:
-  explicit VertexTable(RegionMesh& region) : region_(region) {}
+  VertexTable(RegionMesh& region, bool mixed_versions) : region_(region), mixed_versions_(mixed_versions) {}
 
   /// \param v vertex of the chart
-  std::uint32_t vertex(const LoadedChart& chart, std::size_t v) {
+  /// \param part the part of the region that the chart is of
+  std::uint32_t vertex(const LoadedChart& chart, std::size_t v, std::size_t part) {
     const VertexKey key = chart.keys[v];
     if (key.where == VertexKey::Where::chart) return add(chart, v);
     const auto [it, is_new] = shared_.try_emplace(key.packed(), 0);
-    if (is_new) it->second = add(chart, v);
+    if (is_new) it->second = mixed_versions_ ? at_place(chart, v, part) : add(chart, v);
+    if (mixed_versions_) named_.emplace(it->second, part);
     return it->second;
   }
 
  private:
+  /// A vertex at the same place that the charts of this part have not named yet, or a new one.
+  std::uint32_t at_place(const LoadedChart& chart, std::size_t v, std::size_t part) {
+    std::vector<std::uint32_t>& here = at_place_[chart.chart.positions[v]];
+    for (const std::uint32_t vertex : here)
+      if (!named_.contains({vertex, part})) return vertex;
+    here.push_back(add(chart, v));
+    return here.back();
+  }
+
   std::uint32_t add(const LoadedChart& chart, std::size_t v) {
     region_.keys.push_back(chart.keys[v]);
     region_.points.push_back(chart.chart.positions[v]);
@@ -47,24 +61,28 @@ class VertexTable {
   }
 
   RegionMesh& region_;
+  bool mixed_versions_;
   std::unordered_map<std::uint64_t, std::uint32_t> shared_;
+  std::map<LatticePoint, std::vector<std::uint32_t>> at_place_;
+  std::set<std::pair<std::uint32_t, std::size_t>> named_;
 };
 
 struct Loaded {
   LoadedChart chart;
-  std::vector<PageWire> wires;
+  std::size_t part;
 };
 
-std::vector<LoadedChart> load_parts(std::span<const RegionPart> parts, unsigned threads, ReadCost* cost,
-                                    bool with_layers, std::unordered_map<WireId, PageWire>& wires) {
-  std::vector<LoadedChart> all;
-  for (const RegionPart& part : parts) {
-    ChartLoader loader(*part.at);
-    auto loaded = loader.load(part.charts, threads, cost, with_layers);
-    std::move(loaded.begin(), loaded.end(), std::back_inserter(all));
-    for (const auto& [id, wire] : loader.wires()) wires.try_emplace(id, wire.entry);
+std::vector<Loaded> load_parts(std::span<const RegionPart> parts, unsigned threads, ReadCost* cost, bool with_layers,
+                               std::vector<std::unordered_map<WireId, PageWire>>& wires) {
+  std::vector<Loaded> all;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    ChartLoader loader(*parts[p].at);
+    for (LoadedChart& chart : loader.load(parts[p].charts, threads, cost, with_layers))
+      all.push_back({std::move(chart), p});
+    wires.emplace_back();
+    for (const auto& [id, wire] : loader.wires()) wires.back().try_emplace(id, wire.entry);
   }
-  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.entry.id < b.entry.id; });
+  std::ranges::sort(all, {}, [](const Loaded& loaded) { return loaded.chart.entry.id; });
   return all;
 }
 
@@ -122,48 +140,61 @@ class ValueJoiner {
   const LayerTable& table_;
 };
 
-/// Marks the vertices of wires that charts outside the region pass, and the corners where such wires end.
-void mark_outer_border(RegionMesh& region, const std::unordered_map<WireId, PageWire>& wires) {
-  std::unordered_set<std::uint32_t> outer_wires, outer_corners;
-  for (const auto& [id, wire] : wires) {
-    const bool outer = std::any_of(wire.charts.begin(), wire.charts.end(), [&](ChartId c) {
-      return !std::binary_search(region.charts.begin(), region.charts.end(), c);
-    });
-    if (!outer) continue;
-    outer_wires.insert(id.value);
-    outer_corners.insert(wire.begin.value);
-    outer_corners.insert(wire.end.value);
+/// The edges of a chart's border that charts outside the region share.
+/// \param vertex region vertices of the chart's
+void add_outer_edges(RegionMesh& region, const LoadedChart& chart, const std::vector<std::uint32_t>& vertex,
+                     const std::function<bool(WireId)>& is_outer, const std::unordered_map<WireId, PageWire>& wires) {
+  std::uint32_t first = 0;
+  for (std::size_t l = 0; l < chart.entry.loops.size(); first += chart.chart.loop_sizes[l++]) {
+    const std::uint32_t size = chart.chart.loop_sizes[l];
+    std::uint32_t at = 0;
+    for (const DirectedWire step : chart.entry.loops[l]) {
+      const std::uint32_t end = at + wires.at(step.wire).inner_points + 1;
+      for (; at < end; ++at) {
+        if (!is_outer(step.wire)) continue;
+        const std::uint32_t u = vertex[first + at], v = vertex[first + (at + 1) % size];
+        region.outer_edges.push_back({std::min(u, v), std::max(u, v)});
+      }
+    }
   }
+}
+
+void mark_outer_border(RegionMesh& region) {
+  std::ranges::sort(region.outer_edges);
+  region.outer_edges.erase(std::unique(region.outer_edges.begin(), region.outer_edges.end()), region.outer_edges.end());
   region.outer_border.assign(region.points.size(), false);
-  for (std::size_t v = 0; v < region.keys.size(); ++v) {
-    const VertexKey key = region.keys[v];
-    region.outer_border[v] = (key.where == VertexKey::Where::wire && outer_wires.contains(key.id)) ||
-                             (key.where == VertexKey::Where::corner && outer_corners.contains(key.id));
-  }
+  for (const auto& edge : region.outer_edges)
+    for (const std::uint32_t v : edge) region.outer_border[v] = true;
 }
 
 }  // namespace
 
 RegionMesh load_region(std::span<const RegionPart> parts, unsigned threads, ReadCost* cost, bool with_layers) {
-  std::unordered_map<WireId, PageWire> wires;
-  const std::vector<LoadedChart> charts = load_parts(parts, threads, cost, with_layers, wires);
+  std::vector<std::unordered_map<WireId, PageWire>> wires;
+  const std::vector<Loaded> charts = load_parts(parts, threads, cost, with_layers, wires);
   RegionMesh region;
+  for (const Loaded& loaded : charts) region.charts.push_back(loaded.chart.entry.id);
   std::optional<ValueJoiner> values;
   if (with_layers) values.emplace(region, parts.front().at->layers());
-  VertexTable table(region);
-  for (const LoadedChart& c : charts) {
-    const auto position = static_cast<std::uint32_t>(region.charts.size());
-    region.charts.push_back(c.entry.id);
+  VertexTable table(region, parts.size() > 1);
+  std::uint32_t position = 0;
+  for (const auto& [c, part] : charts) {
     std::vector<std::uint32_t> vertex(c.keys.size());
-    for (std::size_t v = 0; v < c.keys.size(); ++v) vertex[v] = table.vertex(c, v);
+    for (std::size_t v = 0; v < c.keys.size(); ++v) vertex[v] = table.vertex(c, v, part);
     for (const Triangle& t : c.chart.faces) {
       region.faces.push_back({vertex[t[0]], vertex[t[1]], vertex[t[2]]});
       region.chart_of_face.push_back(position);
     }
+    ++position;
+    const auto is_outer = [&](WireId id) {
+      return !std::ranges::all_of(wires[part].at(id).charts,
+                                  [&](ChartId other) { return std::ranges::binary_search(region.charts, other); });
+    };
+    add_outer_edges(region, c, vertex, is_outer, wires[part]);
     if (values) values->add(c, vertex);
   }
   if (values) values->finish();
-  mark_outer_border(region, wires);
+  mark_outer_border(region);
   return region;
 }
 

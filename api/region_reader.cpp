@@ -1,20 +1,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
+#include "api/edited_region_builder.h"
 #include "api/file_attributes.h"
+#include "api/mesh_file/triangulate.h"
 #include "api/region_faces.h"
 #include "api/region_file.h"
 #include "api/region_match.h"
+#include "api/value_interpolation.h"
 #include "ramcdb/error.h"
 
 namespace ramcdb::detail {
 namespace {
 
-constexpr std::string_view kHowToGoOn =
-    "only vertices may move here: undo what added, removed or joined faces or vertices";
-
-constexpr std::uint32_t kNone = ~std::uint32_t{0};
+constexpr std::uint32_t kNone = RegionMatch::kNone;
 
 /// A file's mesh on the lattice.
 class FileMesh {
@@ -47,6 +48,109 @@ class FileMesh {
   std::vector<std::uint32_t> firsts_;
 };
 
+/// Makes an edited region of what was found in a file.
+class FileEditBuilder {
+ public:
+  FileEditBuilder(const Snapshot::Impl& at, const RegionMesh& region, const MatchedRegion& matched,
+                  const FileMesh& file)
+      : at_(at), region_(region), faces_(matched.faces), match_(matched.match), file_(file), builder_(at, region) {}
+
+  EditedRegion run() {
+    add_vertices();
+    add_faces_that_stay();
+    add_new_faces();
+    return builder_.finish(region_.attributes);
+  }
+
+  [[nodiscard]] FilePlaces take_places() { return std::move(places_); }
+
+ private:
+  void add_vertices() {
+    vertex_of_region_.assign(region_.points.size(), kNone);
+    for (const RegionMatch::Vertex& vertex : match_.vertices) {
+      const Point position = vertex.other == kNone ? position_in_region(vertex.region) : file_.positions[vertex.other];
+      const std::uint32_t added = builder_.add_vertex(vertex.region, position);
+      if (vertex.region != kNone) vertex_of_region_[vertex.region] = added;
+      places_.vertices.push_back(vertex.other);
+    }
+  }
+
+  [[nodiscard]] Point position_in_region(std::uint32_t vertex) const {
+    return region_.exact.empty() ? at_.record().lattice.position(region_.points[vertex]) : region_.exact[vertex];
+  }
+
+  /// The triangles of the region's faces that the file has.
+  void add_faces_that_stay() {
+    std::vector<std::uint32_t> file_face(faces_.count(), kNone);
+    for (std::uint32_t f = 0; f < match_.faces.size(); ++f)
+      if (match_.faces[f].face != kNone) file_face[match_.faces[f].face] = f;
+    const std::vector<std::uint32_t> corner_of = faces_.file_corners(), face_of = faces_.file_faces();
+    for (std::uint32_t t = 0; t < region_.faces.size(); ++t) {
+      const std::uint32_t face = face_of[t], other = file_face[face];
+      if (other == kNone) continue;
+      const Triangle& v = region_.faces[t];
+      builder_.add_face({vertex_of_region_[v[0]], vertex_of_region_[v[1]], vertex_of_region_[v[2]]}, t);
+      places_.faces.push_back(other);
+      const std::uint32_t first = faces_.firsts()[face], size = faces_.firsts()[face + 1] - first;
+      for (std::uint32_t i = 0; i < 3; ++i)
+        places_.corners.push_back(file_.firsts()[other] +
+                                  (corner_of[3 * t + i] - first + size - match_.faces[other].turn) % size);
+    }
+  }
+
+  void add_new_faces() {
+    std::vector<std::uint32_t> faces, corners, sizes;
+    for (std::uint32_t f = 0; f < match_.faces.size(); ++f) {
+      if (match_.faces[f].face != kNone) continue;
+      faces.push_back(f);
+      sizes.push_back(file_.firsts()[f + 1] - file_.firsts()[f]);
+      for (std::uint32_t c = file_.firsts()[f]; c < file_.firsts()[f + 1]; ++c) corners.push_back(c);
+    }
+    std::vector<Point> positions;
+    for (const LatticePoint p : file_.points)
+      positions.push_back({static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
+    std::vector<std::uint32_t> vertices;
+    for (const std::uint32_t corner : corners) vertices.push_back(file_.corners[corner]);
+    const mesh_file::Triangulation cut = mesh_file::triangulate(positions, vertices, sizes);
+    std::size_t first_corner = 0;
+    for (std::size_t t = 0, end; t < cut.corners.size(); t = end) {
+      const std::uint32_t face = cut.face[t];
+      for (end = t; end < cut.corners.size() && cut.face[end] == face;) ++end;
+      add_new_face(faces[face], std::span(cut.corners).subspan(t, end - t), corners,
+                   std::span(corners).subspan(first_corner, sizes[face]));
+      first_corner += sizes[face];
+    }
+  }
+
+  /// \param triangles positions in `corners`
+  void add_new_face(std::uint32_t face, std::span<const Triangle> triangles, const std::vector<std::uint32_t>& corners,
+                    std::span<const std::uint32_t> own) {
+    std::vector<std::uint32_t> corner_at(own.size(), kNone);
+    std::uint32_t first = kNone;
+    for (const Triangle& t : triangles) {
+      Triangle vertices{};
+      for (std::size_t i = 0; i < 3; ++i) vertices[i] = match_.vertex[file_.corners[corners[t[i]]]];
+      const std::uint32_t added = builder_.add_face(vertices, kNew);
+      if (first == kNone) first = added;
+      places_.faces.push_back(face);
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        places_.corners.push_back(corners[t[i]]);
+        corner_at[corners[t[i]] - own.front()] = 3 * added + i;
+      }
+    }
+    if (own.size() > 3) builder_.add_polygon(corner_at, first, static_cast<std::uint32_t>(triangles.size()));
+  }
+
+  const Snapshot::Impl& at_;
+  const RegionMesh& region_;
+  const RegionFaces& faces_;
+  const RegionMatch& match_;
+  const FileMesh& file_;
+  EditedRegionBuilder builder_;
+  std::vector<std::uint32_t> vertex_of_region_;
+  FilePlaces places_;
+};
+
 /// Formats that cannot say it otherwise, and programs that give every face vertices of its own.
 bool repeats_vertices(const mesh_file::MeshData& data) {
   if (data.repeats_vertices) return true;
@@ -58,73 +162,20 @@ bool repeats_vertices(const mesh_file::MeshData& data) {
   return true;
 }
 
-/// Which vertex of the file each region vertex is, and which corner and face each corner and face is that a file has.
-struct PlacesInFile {
-  std::vector<std::uint32_t> vertices, corners, faces;
-};
-
-PlacesInFile places_in(const FileMesh& file, const RegionMesh& region, const MatchedRegion& matched) {
-  const RegionFaces& faces = matched.faces;
-  PlacesInFile places{std::vector<std::uint32_t>(region.points.size(), kNone),
-                      std::vector<std::uint32_t>(faces.vertices().size()), std::vector<std::uint32_t>(faces.count())};
-  for (const RegionMatch::Vertex& v : matched.match.vertices) places.vertices[v.region] = v.other;
-  for (std::uint32_t g = 0; g < matched.match.faces.size(); ++g) {
-    const FaceMatch found = matched.match.faces[g];
-    const std::uint32_t size = file.firsts()[g + 1] - file.firsts()[g];
-    places.faces[found.face] = g;
-    for (std::uint32_t i = 0; i < size; ++i)
-      places.corners[faces.firsts()[found.face] + (i + found.turn) % size] = file.firsts()[g] + i;
-  }
-  return places;
-}
-
-std::string place(const Lattice& lattice, LatticePoint p) {
-  const Point q = lattice.position(p);
-  return fmt::format("near {:.9g},{:.9g},{:.9g}", q.x, q.y, q.z);
-}
-
-/// Throws with a place of the region whose faces changed.
-void refuse_other_connectivity(const RegionMesh& region, const MatchedRegion& matched, const Lattice& lattice) {
-  const RegionMatch& match = matched.match;
-  if (match.same_connectivity()) return;
-  std::vector<bool> survives(matched.faces.count(), false);
-  for (const FaceMatch& found : match.faces)
-    if (found.face != kNone) survives[found.face] = true;
-  const auto gone = static_cast<std::size_t>(std::ranges::find(survives, false) - survives.begin());
-  const std::string where = gone < survives.size()
-                                ? place(lattice, region.points[matched.faces.vertices()[matched.faces.firsts()[gone]]])
-                                : "";
-  throw Error(Errc::invalid_argument,
-              fmt::format("{} of {} faces and {} of {} vertices of the region are not in the file, which has {} faces",
-                          match.faces_gone, matched.faces.count(), match.vertices_gone, region.points.size(),
-                          match.faces.size()),
-              where, kHowToGoOn);
-}
-
-std::vector<VertexMove> moves_of(const Snapshot::Impl& at, const RegionMesh& region, const FileMesh& file,
-                                 const PlacesInFile& places) {
-  std::vector<VertexMove> moves;
-  for (std::uint32_t v = 0; v < region.points.size(); ++v) {
-    if (places.vertices[v] == kNone) continue;
-    if (auto move = move_to(at, region, v, file.positions[places.vertices[v]])) moves.push_back(*move);
-  }
-  return moves;
-}
-
 }  // namespace
 
-FileEdit edit_in_file(const Snapshot::Impl& at, const RegionMesh& region, const mesh_file::MeshData& data,
-                      const Point& local_origin, bool trust_ids) {
+EditedRegion edited_in_file(const Snapshot::Impl& at, const RegionMesh& region, const mesh_file::MeshData& data,
+                            const Point& local_origin, bool trust_ids) {
   const FileMesh file(data, at.record(), local_origin);
   const std::span<const std::uint64_t> ids = trust_ids ? data.vertex_ids : std::span<const std::uint64_t>();
   const MatchedRegion matched = match_region(region, file.as_other(ids, repeats_vertices(data)));
-  refuse_other_connectivity(region, matched, at.record().lattice);
-  const PlacesInFile places = places_in(file, region, matched);
-  FileEdit edit;
-  edit.moves = moves_of(at, region, file, places);
-  if (!region.attributes.empty() && !data.attributes.empty())
-    edit.attributes = attributes_in_file(region, matched.faces, data, {places.vertices, places.corners, places.faces});
-  return edit;
+  FileEditBuilder builder(at, region, matched, file);
+  EditedRegion edited = builder.run();
+  if (!region.attributes.empty()) {
+    take_values(data, builder.take_places(), edited.mesh);
+    interpolate_new(region, edited);
+  }
+  return edited;
 }
 
 }  // namespace ramcdb::detail

@@ -26,20 +26,12 @@ codec::CoderTables train_again(const Snapshot::Impl& at, codec::Profile profile,
 }
 
 /// Whether charts, layers and tables take less than before.
-bool is_smaller(const EncodedEdit& edit) {
-  std::int64_t saved = static_cast<std::int64_t>(edit.coding->table_bytes_before);
-  if (edit.coding->table) saved -= static_cast<std::int64_t>(edit.coding->tables.size() + kBlobOverhead);
-  const auto bits = [](const codec::ChartCost& cost) {
-    return static_cast<std::int64_t>(cost.header + cost.connectivity + cost.geometry);
+bool is_smaller(const MeshRecord& before, const MeshRecord& after) {
+  const auto bits = [](const MeshRecord& r) {
+    return 8 * 256 * (r.table_bytes + r.layer_bytes + r.exact_bytes) + r.chart_cost.header + r.chart_cost.connectivity +
+           r.chart_cost.geometry;
   };
-  std::int64_t saved_bits = 0;
-  for (const auto& [id, chart] : edit.charts) {
-    saved_bits += bits(chart.cost_before) - bits(chart.cost);
-    for (const RecodedLayer& layer : chart.layers)
-      saved +=
-          static_cast<std::int64_t>(layer.bytes_before) - static_cast<std::int64_t>(layer.blob.size() + kBlobOverhead);
-  }
-  return 8 * 256 * saved + saved_bits > 0;
+  return bits(after) < bits(before);
 }
 
 }  // namespace
@@ -50,24 +42,24 @@ RepackReport repack_mesh(const Snapshot::Impl& at, const RepackOptions& options)
     if (options.progress) options.progress("encode", done);
   };
   const codec::Profile profile = wanted_profile(at, options);
-  const EncodedEdit encoded =
-      encode_again(at, profile, train_again(at, profile, options.threads), options.threads, progress);
   RepackReport report;
   report.revision = report.parent = at.version();
-  report.charts = encoded.charts.size();
-  if (profile == at.record().profile && !is_smaller(encoded)) {
-    report.nothing_changed = true;
-  } else {
-    CommitOptions commit{options.message, options.author, options.branch, options.threads, options.progress};
-    if (commit.message.empty()) commit.message = profile == codec::Profile::fast ? "repack as fast" : "repack as dense";
-    CommitReport committed;
-    publish_edit(at, encoded, commit, "repack", db::new_attempt_id(), committed);
-    report.conflicts = std::move(committed.conflicts);
+  report.charts = at.record().charts;
+  const auto encode = [&](const Snapshot::Impl& tip) -> std::optional<EncodedEdit> {
+    EncodedEdit encoded =
+        encode_again(tip, profile, train_again(tip, profile, options.threads), options.threads, progress);
+    report.nothing_changed = profile == tip.record().profile && !is_smaller(tip.record(), encoded.record);
+    if (report.nothing_changed) return std::nullopt;
+    return encoded;
+  };
+  CommitOptions commit{options.message, options.author, options.branch, options.threads, options.progress};
+  if (commit.message.empty()) commit.message = profile == codec::Profile::fast ? "repack as fast" : "repack as dense";
+  CommitReport committed;
+  publish_on_tip(at.store_handle(), at.root().mesh, commit, "repack", db::new_attempt_id(), encode, committed);
+  if (!report.nothing_changed) {
     report.bytes_written = committed.bytes_written;
-    if (report.conflicts.empty()) {
-      report.revision = committed.revision;
-      report.parent = committed.parent;
-    }
+    report.revision = committed.revision;
+    report.parent = committed.parent;
   }
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;

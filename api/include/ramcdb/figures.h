@@ -116,7 +116,8 @@ struct ChangeReport {
   VersionId base, tip;
   std::vector<ChartId> charts_touched;  ///< with a moved vertex, border included, inside the region
   std::uint64_t vertices_moved = 0, vertices_added = 0, vertices_removed = 0;
-  std::uint64_t values_changed = 0;                   ///< of attributes
+  std::uint64_t faces_added = 0, faces_removed = 0;   ///< triangles
+  std::uint64_t values_changed = 0;                   ///< of attributes, of what stays
   std::uint64_t border_vertices_moved = 0;            ///< of them, on the region's own border
   double max_displacement = 0, rms_displacement = 0;  ///< model units; rms over moved vertices
   struct ChartChange {
@@ -124,11 +125,14 @@ struct ChangeReport {
     std::uint64_t vertices_moved = 0;
     double max_displacement = 0;
     std::uint64_t values_changed = 0;
+    bool remeshed = false;  ///< faces come or go
   };
   std::vector<ChartChange> per_chart;
   std::vector<ChartId> changed_by_others;  ///< charts of the region that newer versions changed
   std::vector<ChartId> conflicts;          ///< of these, the ones that this edit touches too
-  [[nodiscard]] bool clean() const { return vertices_moved + vertices_added + vertices_removed + values_changed == 0; }
+  [[nodiscard]] bool clean() const {
+    return vertices_moved + vertices_added + vertices_removed + faces_added + faces_removed + values_changed == 0;
+  }
 };
 
 struct CommitReport {
@@ -137,10 +141,12 @@ struct CommitReport {
   bool nothing_changed = false;
   std::uint64_t charts_touched = 0;  ///< with a moved vertex inside the region
   std::uint64_t charts_reencoded = 0, charts_added = 0, charts_removed = 0, wires_reencoded = 0, ranges_expanded = 0;
+  std::vector<ChartId> added, removed;  ///< these charts, ascending
   std::uint64_t vertices_moved = 0, vertices_added = 0, vertices_removed = 0;
-  std::uint64_t values_changed = 0;    ///< of attributes
-  std::uint64_t layers_reencoded = 0;  ///< blobs of attributes
-  double max_displacement = 0;         ///< model units
+  std::uint64_t faces_added = 0, faces_removed = 0;  ///< triangles
+  std::uint64_t values_changed = 0;                  ///< of attributes
+  std::uint64_t layers_reencoded = 0;                ///< blobs of attributes
+  double max_displacement = 0;                       ///< model units
   std::uint64_t bytes_written = 0;
   double seconds = 0;
   std::vector<ChartId> conflicts;  ///< not empty: refused, nothing was written

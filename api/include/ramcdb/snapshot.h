@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -26,11 +27,14 @@ struct VertexKey {
 
 /// A region as a triangle mesh: every vertex once, shared between its charts.
 struct RegionMesh {
-  std::vector<ChartId> charts;               ///< ascending
-  std::vector<LatticePoint> points;          ///< per vertex
-  std::vector<Point> exact;                  ///< per vertex, model units; empty unless the mesh is lossless
-  std::vector<VertexKey> keys;               ///< per vertex, no two equal
-  std::vector<bool> outer_border;            ///< per vertex: also belongs to a chart outside the region
+  std::vector<ChartId> charts;       ///< ascending
+  std::vector<LatticePoint> points;  ///< per vertex
+  std::vector<Point> exact;          ///< per vertex, model units; empty unless the mesh is lossless
+  std::vector<VertexKey> keys;       ///< per vertex, no two equal
+  std::vector<bool> outer_border;    ///< per vertex: on an edge that a chart outside the region shares
+  /// These edges as pairs of vertices, the smaller first, ascending. Their vertices may move; faces may neither come
+  /// nor go at them.
+  std::vector<std::array<std::uint32_t, 2>> outer_edges;
   std::vector<Triangle> faces;               ///< chart by chart, in decode order
   std::vector<std::uint32_t> chart_of_face;  ///< per face: position in `charts`
 

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <span>
+
+#include "api/edited_region.h"
+#include "api/snapshot_impl.h"
+
+namespace ramcdb::detail {
+
+/// Puts an edited region together, vertex by vertex and face by face.
+class EditedRegionBuilder {
+ public:
+  /// Both must outlive the builder.
+  EditedRegionBuilder(const Snapshot::Impl& at, const RegionMesh& region);
+
+  /// \param source vertex of the region, or kNew
+  /// \param position model units; it becomes what the mesh keeps of it. Throws as Lattice::snap.
+  std::uint32_t add_vertex(std::uint32_t source, const Point& position);
+  /// \param source face of the region, whose vertices these are corner by corner, or kNew
+  std::uint32_t add_face(const Triangle& vertices, std::uint32_t source);
+  /// A polygon of `faces` new faces from `first` on, by its corners: 3 * face + 0..2 each.
+  void add_polygon(std::span<const std::uint32_t> corners, std::uint32_t first, std::uint32_t faces);
+
+  /// Polygons of the region of which all faces stay are kept. Of what is new the values are NaN.
+  /// \param attributes the values of what stays, in the numbering of the region
+  [[nodiscard]] EditedRegion finish(std::span<const Attribute> attributes);
+
+ private:
+  void keep_polygons();
+  void take_values(std::span<const Attribute> attributes);
+
+  const Snapshot::Impl& at_;
+  const RegionMesh& region_;
+  EditedRegion out_;
+};
+
+}  // namespace ramcdb::detail

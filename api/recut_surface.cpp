@@ -1,0 +1,164 @@
+#include "api/recut_surface.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "api/region_query.h"
+#include "ramcdb/error.h"
+
+namespace ramcdb::detail {
+namespace {
+
+class SurfaceBuilder {
+ public:
+  SurfaceBuilder(const Snapshot::Impl& at, const RegionMesh& region, const EditedRegion& edited,
+                 const ChangeSet& changes)
+      : at_(at), region_(region), edited_(edited), local_of_(edited.mesh.points.size(), kNew) {
+    out_.charts.assign(changes.recut.begin(), changes.recut.end());
+  }
+
+  RecutSurface run(unsigned threads) {
+    ChartLoader loader(at_);
+    out_.loaded = loader.load(out_.charts, threads, nullptr, true);
+    out_.wires = loader.wires();
+    add_faces();
+    add_isolated_vertices();
+    name_vertices();
+    add_before();
+    fix_wires();
+    fix_corners();
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t position_of(ChartId id) const {
+    const auto it = std::ranges::lower_bound(out_.charts, id);
+    return it != out_.charts.end() && *it == id ? static_cast<std::uint32_t>(it - out_.charts.begin()) : kNew;
+  }
+
+  std::uint32_t local(std::uint32_t vertex) {
+    std::uint32_t& at = local_of_[vertex];
+    if (at == kNew) {
+      at = static_cast<std::uint32_t>(out_.vertex.size());
+      out_.vertex.push_back(vertex);
+      out_.mesh.positions.push_back(edited_.mesh.points[vertex]);
+    }
+    return at;
+  }
+
+  void add_faces() {
+    const RegionMesh& mesh = edited_.mesh;
+    for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
+      const std::uint32_t source = edited_.face_source[f];
+      const std::uint32_t chart = source == kNew ? kNew : position_of(region_.charts[region_.chart_of_face[source]]);
+      if (source != kNew && chart == kNew) continue;
+      out_.mesh.faces.push_back({local(mesh.faces[f][0]), local(mesh.faces[f][1]), local(mesh.faces[f][2])});
+      out_.face.push_back(f);
+      out_.chart_of_face.push_back(chart);
+      if (!mesh.polygon_of_face.empty()) out_.mesh.polygon_of_face.push_back(mesh.polygon_of_face[f]);
+    }
+  }
+
+  void add_isolated_vertices() {
+    std::vector<bool> used(edited_.mesh.points.size(), false);
+    for (const Triangle& t : edited_.mesh.faces)
+      for (const std::uint32_t v : t) used[v] = true;
+    for (std::uint32_t v = 0; v < used.size(); ++v) {
+      if (used[v]) continue;
+      const std::uint32_t source = edited_.vertex_source[v];
+      const bool of_chart = source != kNew && region_.keys[source].where == VertexKey::Where::chart;
+      const std::uint32_t chart = of_chart ? position_of(ChartId(region_.keys[source].id)) : kNew;
+      if (of_chart && chart == kNew) continue;
+      (void)local(v);
+      out_.chart_of_isolated_vertex.push_back(chart);
+    }
+  }
+
+  void name_vertices() {
+    for (std::uint32_t v = 0; v < out_.vertex.size(); ++v) {
+      const std::uint32_t source = edited_.vertex_source[out_.vertex[v]];
+      if (source == kNew || region_.keys[source].where == VertexKey::Where::chart) continue;
+      out_.vertex_of_key.emplace(region_.keys[source].packed(), v);
+      if (region_.keys[source].where == VertexKey::Where::corner)
+        out_.corner_at.emplace(v, CornerId(region_.keys[source].id));
+    }
+  }
+
+  void add_before() {
+    std::vector<std::uint32_t> local_of(region_.points.size(), kNew);
+    const auto add = [&](std::uint32_t v) {
+      if (local_of[v] == kNew) {
+        local_of[v] = static_cast<std::uint32_t>(out_.before.positions.size());
+        out_.before.positions.push_back(region_.points[v]);
+      }
+      return local_of[v];
+    };
+    for (std::uint32_t f = 0; f < region_.faces.size(); ++f) {
+      if (position_of(region_.charts[region_.chart_of_face[f]]) == kNew) continue;
+      const Triangle& t = region_.faces[f];
+      out_.before.faces.push_back({add(t[0]), add(t[1]), add(t[2])});
+    }
+    for (std::uint32_t v = 0; v < region_.keys.size(); ++v)
+      if (region_.keys[v].where == VertexKey::Where::chart && position_of(ChartId(region_.keys[v].id)) != kNew)
+        (void)add(v);
+  }
+
+  void fix_wires() {
+    std::vector<WireId> ids;
+    for (const auto& [id, wire] : out_.wires)
+      if (!out_.is_inner(wire.entry)) ids.push_back(id);
+    std::ranges::sort(ids);
+    for (const WireId id : ids) {
+      chartify::FixedWire fixed{out_.path_of(out_.wires.at(id).entry)};
+      if (fixed.vertices.empty())
+        throw Error(Errc::conflict, fmt::format("vertices of wire {} are gone, which other charts pass", id.value));
+      out_.fixed_ids.push_back(id);
+      out_.fixed.push_back(std::move(fixed));
+    }
+  }
+
+  void fix_corners() {
+    std::map<CornerId, LatticePoint> corners;
+    for (const auto& [id, wire] : out_.wires) {
+      corners.emplace(wire.entry.begin, wire.wire.points.front());
+      corners.emplace(wire.entry.end, wire.wire.points.back());
+    }
+    for (const auto& [corner, position] : corners) {
+      const std::set<ChartId> around = charts_at_corner(at_, corner, position);
+      if (std::ranges::all_of(around, [&](ChartId c) { return out_.holds(c); })) continue;
+      out_.shared_corners.insert(corner);
+      const auto at = out_.vertex_of_key.find(VertexKey{VertexKey::Where::corner, corner.value, 0}.packed());
+      if (at != out_.vertex_of_key.end()) out_.corners.push_back(at->second);
+    }
+    std::ranges::sort(out_.corners);
+  }
+
+  const Snapshot::Impl& at_;
+  const RegionMesh& region_;
+  const EditedRegion& edited_;
+  std::vector<std::uint32_t> local_of_;
+  RecutSurface out_;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> RecutSurface::path_of(const PageWire& wire) const {
+  std::vector<std::uint32_t> path;
+  for (std::uint32_t i = 0; i < wire.inner_points + 2; ++i) {
+    const VertexKey key = i == 0                  ? VertexKey{VertexKey::Where::corner, wire.begin.value, 0}
+                          : i > wire.inner_points ? VertexKey{VertexKey::Where::corner, wire.end.value, 0}
+                                                  : VertexKey{VertexKey::Where::wire, wire.id.value, i - 1};
+    const auto found = vertex_of_key.find(key.packed());
+    if (found == vertex_of_key.end()) return {};
+    path.push_back(found->second);
+  }
+  return path;
+}
+
+RecutSurface recut_surface(const Snapshot::Impl& at, const RegionMesh& region, const EditedRegion& edited,
+                           const ChangeSet& changes, unsigned threads) {
+  return SurfaceBuilder(at, region, edited, changes).run(threads);
+}
+
+}  // namespace ramcdb::detail
