@@ -11,6 +11,7 @@
 #include <map>
 #include <set>
 
+#include "api/locks.h"
 #include "api/page_rewriter.h"
 #include "api/store_format.h"
 #include "api/version_figures.h"
@@ -252,6 +253,8 @@ void publish_edit(const Snapshot::Impl& base, const EncodedEdit& edit, const Com
   const Snapshot::Impl at_tip(base.store_handle(), tip, *found);
   report.conflicts = find_conflicts(at_tip.pages(), edit);
   if (!report.conflicts.empty()) return;
+  const db::ChangedCharts changed = changed_charts(base.root().mesh, edit);
+  if (!options.ignore_locks) refuse_locked(base.store(), changed.mesh, changed.charts, options.author);
 
   MeshRecord record = at_tip.record();
   put_edit(edit, base.root().mesh, *writer, record);
@@ -266,7 +269,7 @@ void publish_edit(const Snapshot::Impl& base, const EncodedEdit& edit, const Com
   info.author = options.author;
   info.message = options.message;
   info.attempt = attempt;
-  info.changed = {changed_charts(base.root().mesh, edit)};
+  info.changed = {changed};
   report.parent = tip;
   report.bytes_written = writer->bytes_put();
   info.figures = figures_of(report, operation, edit.charts.size());

@@ -58,7 +58,8 @@ RepackReport repack_mesh(const Snapshot::Impl& at, const RepackOptions& options)
   if (profile == at.record().profile && !is_smaller(encoded)) {
     report.nothing_changed = true;
   } else {
-    CommitOptions commit{options.message, options.author, options.branch, options.threads, options.progress};
+    CommitOptions commit{options.message, options.author,   options.branch,
+                         options.threads, options.progress, options.ignore_locks};
     if (commit.message.empty()) commit.message = profile == codec::Profile::fast ? "repack as fast" : "repack as dense";
     CommitReport committed;
     publish_edit(at, encoded, commit, "repack", db::new_attempt_id(), committed);
