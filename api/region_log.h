@@ -2,16 +2,19 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
+#include <utility>
 
-#include "api/page_index.h"
 #include "api/snapshot_impl.h"
 #include "ramcdb/region.h"
+#include "ramcdb/wire_net.h"
 
 namespace ramcdb::detail {
 
-/// Tells which versions of a mesh touched a place, reading index pages only, and of them only those above charts that a
-/// version changed. To be asked from new to old, so that pages that neighbouring versions share are read once.
+/// Tells which versions of a mesh touched a place. Reads index pages only, and of them only those that hold changed
+/// charts and meet the region. To be asked from new to old: pages that versions share are read once, and are kept only
+/// as long as an older version may hold them.
 class RegionLog {
  public:
   /// A changed chart counts when its box before or after meets a shape of the region, or when it is one of the charts
@@ -21,15 +24,21 @@ class RegionLog {
   [[nodiscard]] bool touched_by(const db::VersionInfo& version);
 
  private:
-  [[nodiscard]] bool meets_region(const PageIndex* pages, ChartId chart) const;
-  /// Null where the version does not hold the mesh.
-  [[nodiscard]] const PageIndex* pages_of(VersionId version);
+  /// Whether one of `changed` (ascending) meets the region as `version` holds it.
+  [[nodiscard]] bool meets_at(VersionId version, const std::vector<ChartId>& changed);
+  [[nodiscard]] bool meets_below(PageId id, VersionId version, const std::vector<ChartId>& changed, int depth);
+  [[nodiscard]] bool meets_region(const LatticeBox& box) const;
+  [[nodiscard]] std::shared_ptr<const Page> page(PageId id, VersionId version);
+  /// Nothing where the version does not hold the mesh.
+  [[nodiscard]] const std::optional<db::MeshRoot>& root_at(VersionId version);
 
   const Snapshot::Impl& at_;
-  Region region_;
+  std::unique_ptr<db::BlobReader> reader_;
+  std::vector<RegionShape> boxes_;  ///< the shapes that charts may meet
   std::set<ChartId> named_;
-  bool everything_ = false, any_box_ = false;
-  std::map<VersionId, std::unique_ptr<PageIndex>> pages_;
+  bool everything_ = false;
+  std::map<VersionId, std::optional<db::MeshRoot>> roots_;
+  std::map<std::pair<VersionId, PageId>, std::shared_ptr<const Page>> pages_;
 };
 
 }  // namespace ramcdb::detail

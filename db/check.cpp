@@ -68,11 +68,6 @@ void check_record(const Transaction& transaction, Catalogue& catalogue, VersionI
 /// Every name leads to a version that is there; every lock names charts.
 void check_names(Catalogue& catalogue, const Found& found) {
   for (const std::string& problem : catalogue.refs().problems()) found({"catalogue", std::nullopt, problem});
-  for (const Ref& ref : catalogue.refs().all())
-    if (!catalogue.version(ref.version))
-      found({"catalogue", std::nullopt,
-             fmt::format("{} {} names version {}, which is not there", ref.is_tag ? "tag" : "branch", ref.name,
-                         ref.version.value)});
   for (const std::string& problem : catalogue.locks().problems()) found({"catalogue", std::nullopt, problem});
 }
 

@@ -25,6 +25,14 @@ Ref ref_of(const Statement& row) {
 
 bool is_intact(const Statement& row) { return checksum_of(ref_of(row)) == row.integer(3); }
 
+bool has_version(Database& database, VersionId version) {
+  return database.prepare("SELECT 1 FROM version WHERE id = ?").bind(1, std::int64_t{version.value}).step();
+}
+
+std::string missing_text(const Ref& ref) {
+  return fmt::format("{} {} names version {}, which is not there", kind_of(ref), ref.name, ref.version.value);
+}
+
 }  // namespace
 
 std::vector<Ref> RefTable::all() {
@@ -38,11 +46,12 @@ std::optional<Ref> RefTable::find(std::string_view name) {
   Statement s = database_.prepare(fmt::format("SELECT {} FROM ref WHERE name = ?", kColumns));
   s.bind(1, name);
   if (!s.step()) return std::nullopt;
-  const Ref ref = ref_of(s);
+  Ref ref = ref_of(s);
+  const std::string way_out = fmt::format("set it anew with `ramcdb {} REPO {} VERSION -f`", kind_of(ref), name);
   if (!is_intact(s))
     throw Error(Errc::corrupt, fmt::format("what {} {} names is damaged", kind_of(ref), name),
-                fmt::format("it says version {}", ref.version.value),
-                fmt::format("set it anew with `ramcdb {} REPO {} VERSION -f`", kind_of(ref), name));
+                fmt::format("it says version {}", ref.version.value), way_out);
+  if (!has_version(database_, ref.version)) throw Error(Errc::corrupt, missing_text(ref), {}, way_out);
   return ref;
 }
 
@@ -65,10 +74,13 @@ void RefTable::remove(std::string_view name) {
 
 std::vector<std::string> RefTable::problems() {
   std::vector<std::string> problems;
-  for (Statement s = database_.prepare(fmt::format("SELECT {} FROM ref ORDER BY kind, name", kColumns)); s.step();)
-    if (const Ref ref = ref_of(s); !is_intact(s))
+  for (Statement s = database_.prepare(fmt::format("SELECT {} FROM ref ORDER BY kind, name", kColumns)); s.step();) {
+    const Ref ref = ref_of(s);
+    if (!is_intact(s))
       problems.push_back(
           fmt::format("what {} {} names is damaged: it says version {}", kind_of(ref), ref.name, ref.version.value));
+    if (!has_version(database_, ref.version)) problems.push_back(missing_text(ref));
+  }
   return problems;
 }
 

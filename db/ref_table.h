@@ -28,7 +28,7 @@ class RefTable {
 
   /// Branches first, then tags, each by name; damaged ones as they stand there.
   [[nodiscard]] std::vector<Ref> all();
-  /// Throws corrupt where the row is damaged.
+  /// Throws corrupt where the row is damaged or names a version that is not there.
   [[nodiscard]] std::optional<Ref> find(std::string_view name);
   /// The tip of a branch; none where there is no such branch. Throws invalid_argument for a tag, and as find().
   [[nodiscard]] VersionId tip(std::string_view branch);

@@ -43,9 +43,6 @@ VersionId first_parent(Catalogue& catalogue, VersionId version, std::string_view
 /// Where blobs were lost a branch goes on with its newest version that is whole; a tag stands for one version only.
 VersionId version_of(Catalogue& catalogue, const Ref& ref, std::string_view revision,
                      const std::function<bool(VersionId)>& has_blobs) {
-  if (!catalogue.version(ref.version))
-    throw Error(Errc::corrupt, fmt::format("{} names version {}, which is not there", ref.name, ref.version.value), {},
-                "run `ramcdb verify`, restore both files from the same backup");
   VersionId version = ref.version;
   while (!has_blobs(version)) {
     if (ref.is_tag) refuse_lost(version);

@@ -226,6 +226,8 @@ TEST_F(Names, ANameForAVersionThatIsMissingIsFound) {
       .run("PRAGMA foreign_keys = OFF; DELETE FROM version WHERE id = 5");
   const auto store = temp_.open();
   expect_error(Errc::corrupt, "side names version 5, which is not there", [&] { (void)store->resolve("side"); });
+  expect_error(Errc::corrupt, "side names version 5, which is not there",
+               [&] { (void)store->writer(10)->tip("side"); });
   const auto found = problems(*store);
   EXPECT_NE(std::find(found.begin(), found.end(), "catalogue: branch side names version 5, which is not there"),
             found.end());
