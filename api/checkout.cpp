@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <utility>
 
 #include "api/commit.h"
+#include "api/locks.h"
 #include "api/region_file.h"
 #include "api/sidecar.h"
 #include "ramcdb/error.h"
@@ -117,7 +119,7 @@ void move_sidecar_on(EditedFile& edited, const std::filesystem::path& file, cons
 
 CheckoutReport checkout_region(db::Store& store, const std::filesystem::path& repository, const Snapshot& snapshot,
                                const std::vector<ChartId>& charts, const std::filesystem::path& file,
-                               const FileOptions& options) {
+                               const FileOptions& options, std::uint32_t lock) {
   const auto start = Clock::now();
   refuse_to_overwrite(file, options);
   ReadCost cost;
@@ -134,6 +136,7 @@ CheckoutReport checkout_region(db::Store& store, const std::filesystem::path& re
   sidecar.ids_version = snapshot.version();
   sidecar.file_hash = hash_file(file);
   sidecar.nonce = db::new_attempt_id();
+  sidecar.lock = lock;
   sidecar.painted = options.paint != Paint::none;
   write_sidecar(file, sidecar);
   CheckoutReport report = report_for(snapshot, region, cost, written);
@@ -166,7 +169,10 @@ CommitReport commit_file(const std::shared_ptr<db::Store>& store, const std::fil
   EditedFile edited = read_edited_file(store, file);
   CommitReport report =
       commit_edit(edited.edit, options, attempt_name(edited.sidecar.nonce, options.branch, edited.edit));
-  if (report.conflicts.empty() && !report.nothing_changed) move_sidecar_on(edited, file, report);
+  if (report.conflicts.empty() && !report.nothing_changed) {
+    release_lock(*store, std::exchange(edited.sidecar.lock, 0));
+    move_sidecar_on(edited, file, report);
+  }
   report.seconds = seconds_since(start);
   return report;
 }

@@ -9,10 +9,10 @@
 
 namespace ramcdb::detail {
 
-/// Region -> file and sidecar: see Repository::checkout_file.
+/// Region -> file and sidecar: see Repository::checkout_file. \param lock that was taken for it; 0 for none
 CheckoutReport checkout_region(db::Store& store, const std::filesystem::path& repository, const Snapshot& snapshot,
                                const std::vector<ChartId>& charts, const std::filesystem::path& file,
-                               const FileOptions& options);
+                               const FileOptions& options, std::uint32_t lock);
 
 /// Whole mesh -> file: see Repository::export_mesh.
 CheckoutReport export_mesh(const Snapshot& snapshot, const std::filesystem::path& file, const FileOptions& options);

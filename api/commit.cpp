@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "api/locks.h"
 #include "api/page_rewriter.h"
 #include "api/store_format.h"
 #include "api/version_figures.h"
@@ -153,6 +154,7 @@ class TipPublisher {
   /// False when the tip moved.
   bool publish(const Snapshot::Impl& tip, EncodedEdit& edit, db::Writer& writer) const {
     if (writer.tip(options_.branch) != tip.version()) return false;
+    if (!options_.ignore_locks) refuse_locked(*store_, mesh_, edit.changed, options_.author);
     db::CommitInfo info;
     info.roots = store_->roots(tip.version());
     const db::MeshRoot moved = put_edit(tip, edit, writer);

@@ -13,6 +13,7 @@
 #include "api/version_figures.h"
 #include "chartify/chartify.h"
 #include "codec/page_codec.h"
+#include "db/ref_name.h"
 #include "ramcdb/error.h"
 
 namespace ramcdb::detail {
@@ -29,6 +30,13 @@ std::string mesh_name(const std::filesystem::path& file, const ImportOptions& op
   if (name.empty() || name.size() > 200 || name.find_first_of("\n\r\t") != std::string::npos)
     throw Error(Errc::invalid_argument, fmt::format("'{}' cannot name a mesh", name), {}, "choose one with --name");
   return name;
+}
+
+/// What a version on this branch begins from: its tip; for a branch that is not there yet, main's.
+VersionId base_of(db::Store& store, const std::string& branch) {
+  if (const VersionId tip = store.tip(branch)) return tip;
+  db::require_ref_name(branch);
+  return store.tip("main");
 }
 
 void refuse_taken(db::Store& store, VersionId tip, const std::string& name) {
@@ -146,11 +154,11 @@ db::ChangedCharts all_charts(MeshId mesh, std::uint64_t count) {
 void publish(db::Store& store, const std::string& name, const std::filesystem::path& file, const ImportOptions& options,
              EncodedMesh& encoded, const LayerTable& table, MeshRecord& record) {
   const auto writer = store.writer();
-  const VersionId tip = writer->tip(options.branch);
+  const VersionId tip = base_of(store, options.branch);
   refuse_taken(store, tip, name);
   db::CommitInfo info;
   info.branch = options.branch;
-  info.expected_tip = tip;
+  info.expected_tip = writer->tip(options.branch);
   if (tip) info.parents = {tip};
   info.author = options.author;
   info.message = options.message.empty() ? "import " + file.filename().string() : options.message;
@@ -170,7 +178,7 @@ void publish(db::Store& store, const std::string& name, const std::filesystem::p
 }  // namespace
 
 void refuse_taken_name(db::Store& store, const ImportOptions& options, const std::filesystem::path& file) {
-  refuse_taken(store, store.resolve(options.branch), mesh_name(file, options));
+  refuse_taken(store, base_of(store, options.branch), mesh_name(file, options));
 }
 
 ImportReport import_mesh(db::Store& store, const std::filesystem::path& file, const ImportOptions& options,
@@ -178,7 +186,7 @@ ImportReport import_mesh(db::Store& store, const std::filesystem::path& file, co
   const auto start = std::chrono::steady_clock::now();
   ImportReport report;
   name = mesh_name(file, options);
-  refuse_taken(store, store.resolve(options.branch), name);
+  refuse_taken(store, base_of(store, options.branch), name);
   MeshRecord record;
   mesh_file::MeshData data = read_file(file, options, report);
   const NumberType type = type_of(data.positions);

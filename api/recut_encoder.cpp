@@ -11,6 +11,7 @@
 #include "api/region_faces.h"
 #include "api/store_format.h"
 #include "api/topology.h"
+#include "chartify/wire_net_builder.h"
 #include "codec/wire_codec.h"
 #include "ramcdb/error.h"
 

@@ -60,6 +60,13 @@ bool meets(const ModelBox& box, const InFrustum& shape) {
   return true;
 }
 
+bool meets_any(const ModelBox& box, const RegionShape& shape) {
+  if (const auto* in_box = std::get_if<InBox>(&shape)) return meets(box, *in_box);
+  if (const auto* in_sphere = std::get_if<InSphere>(&shape)) return meets(box, *in_sphere);
+  if (const auto* in_frustum = std::get_if<InFrustum>(&shape)) return meets(box, *in_frustum);
+  return false;
+}
+
 using ChartSet = std::set<ChartId>;
 
 /// Adds the charts whose box `wanted` accepts.
@@ -141,18 +148,12 @@ void add_shape(const Snapshot::Impl& at, const RegionShape& shape, ChartSet& fou
     add_named(at, *named, found, cost);
   } else if (const auto* near = std::get_if<NearestTo>(&shape)) {
     add_nearest(at, near->point, found, cost);
-  } else if (const auto* box = std::get_if<InBox>(&shape)) {
-    add_where(
-        at, [&](const ModelBox& b) { return meets(b, *box); }, found, cost);
-  } else if (const auto* sphere = std::get_if<InSphere>(&shape)) {
-    add_where(
-        at, [&](const ModelBox& b) { return meets(b, *sphere); }, found, cost);
-  } else if (const auto* frustum = std::get_if<InFrustum>(&shape)) {
-    add_where(
-        at, [&](const ModelBox& b) { return meets(b, *frustum); }, found, cost);
-  } else {
+  } else if (std::holds_alternative<WholeMesh>(shape)) {
     add_where(
         at, [](const ModelBox&) { return true; }, found, cost);
+  } else {
+    add_where(
+        at, [&](const ModelBox& box) { return meets_any(box, shape); }, found, cost);
   }
 }
 
@@ -187,6 +188,10 @@ ChartSet ring_of(const Snapshot::Impl& at, const ChartSet& found, ReadCost* cost
 }
 
 }  // namespace
+
+bool meets_shape(const MeshRecord& record, const LatticeBox& box, const RegionShape& shape) {
+  return !box.empty() && meets_any(model_box(record, box), shape);
+}
 
 std::set<ChartId> charts_at_corner(const Snapshot::Impl& at, CornerId corner, LatticePoint position, ReadCost* cost) {
   std::set<ChartId> charts;

@@ -52,7 +52,8 @@ RepackReport repack_mesh(const Snapshot::Impl& at, const RepackOptions& options)
     if (report.nothing_changed) return std::nullopt;
     return encoded;
   };
-  CommitOptions commit{options.message, options.author, options.branch, options.threads, options.progress};
+  CommitOptions commit{options.message, options.author,   options.branch,
+                       options.threads, options.progress, options.ignore_locks};
   if (commit.message.empty()) commit.message = profile == codec::Profile::fast ? "repack as fast" : "repack as dense";
   CommitReport committed;
   publish_on_tip(at.store_handle(), at.root().mesh, commit, "repack", db::new_attempt_id(), encode, committed);

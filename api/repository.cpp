@@ -7,6 +7,8 @@
 #include "api/checkout.h"
 #include "api/diff.h"
 #include "api/import.h"
+#include "api/locks.h"
+#include "api/region_log.h"
 #include "api/repack.h"
 #include "api/repository_impl.h"
 #include "api/sidecar.h"
@@ -33,7 +35,7 @@ const db::MeshRoot& choose_mesh(const std::vector<db::MeshRoot>& roots, std::str
   return roots.front();
 }
 
-VersionRecord record_of(db::Store& store, const db::VersionInfo& info) {
+VersionRecord record_of(db::Store& store, const db::VersionInfo& info, const std::vector<db::Ref>& refs) {
   const detail::VersionFigures figures = detail::decode_figures(info.figures);
   VersionRecord record;
   record.id = info.id;
@@ -49,6 +51,8 @@ VersionRecord record_of(db::Store& store, const db::VersionInfo& info) {
   record.vertices_removed = figures.vertices_removed;
   record.max_displacement = figures.max_displacement;
   record.bytes_written = figures.bytes_written;
+  for (const db::Ref& ref : refs)
+    if (ref.version == info.id) record.refs.push_back({ref.name, ref.is_tag});
   const auto roots = store.roots(info.id);
   for (db::ChangedCharts& change : store.changed(info.id)) {
     const auto root = std::find_if(roots.begin(), roots.end(), [&](const auto& r) { return r.mesh == change.mesh; });
@@ -98,11 +102,26 @@ std::vector<VersionRecord> Repository::log(std::string_view revision, std::size_
   const VersionId from = store->resolve(revision);
   std::vector<VersionRecord> records;
   if (!from) return records;
+  const std::vector<db::Ref> refs = store->refs();
   const std::size_t most = mesh.empty() ? limit : ~std::size_t{0};
   for (const db::VersionInfo& info : store->history(from, most)) {
-    VersionRecord record = record_of(*store, info);
+    VersionRecord record = record_of(*store, info, refs);
     if (changes_mesh(record, mesh)) records.push_back(std::move(record));
     if (records.size() == limit) break;
+  }
+  return records;
+}
+
+std::vector<VersionRecord> Repository::log_of_region(const Region& region, std::string_view revision, std::size_t limit,
+                                                     std::string_view mesh) const {
+  const auto& store = impl_->store();
+  const Snapshot from = snapshot(mesh, revision);
+  const std::vector<db::Ref> refs = store->refs();
+  detail::RegionLog touches(from.impl(), region);
+  std::vector<VersionRecord> records;
+  for (const db::VersionInfo& info : store->history(from.version(), ~std::size_t{0})) {
+    if (records.size() == limit) break;
+    if (touches.touched_by(info)) records.push_back(record_of(*store, info, refs));
   }
   return records;
 }
@@ -113,7 +132,7 @@ VersionRecord Repository::show(std::string_view revision) const {
   if (!version)
     throw Error(Errc::not_found, "the repository has no version yet", folder().string(),
                 "add a mesh with `ramcdb import REPO FILE`");
-  return record_of(*store, store->version(version));
+  return record_of(*store, store->version(version), store->refs());
 }
 
 namespace {
@@ -166,11 +185,29 @@ CheckoutReport Repository::export_mesh(const Snapshot& snapshot, const std::file
 
 CheckoutReport Repository::checkout_file(const Snapshot& snapshot, const std::vector<ChartId>& charts,
                                          const std::filesystem::path& file, const FileOptions& options) const {
-  return detail::checkout_region(*impl_->store(), folder(), snapshot, charts, file, options);
+  if (!options.lock) return detail::checkout_region(*impl_->store(), folder(), snapshot, charts, file, options, 0);
+  const auto store = impl_->store_for_writing();
+  const LockReport taken = detail::lock_charts(store, snapshot.impl(), charts, *options.lock);
+  try {
+    CheckoutReport report = detail::checkout_region(*store, folder(), snapshot, charts, file, options, taken.lock.id);
+    report.lock = taken;
+    return report;
+  } catch (...) {
+    detail::release_lock(*store, taken.lock.id);
+    throw;
+  }
 }
 
 ChangeReport Repository::status_file(const std::filesystem::path& file) const {
-  return detail::status_of_file(impl_->store(), file);
+  const auto& store = impl_->store();
+  ChangeReport report = detail::status_of_file(store, file);
+  const detail::Sidecar sidecar = detail::read_sidecar(file);
+  std::vector<ChartId> charts;
+  for (const auto& part : sidecar.parts) charts.insert(charts.end(), part.charts.begin(), part.charts.end());
+  std::sort(charts.begin(), charts.end());
+  const auto roots = store->roots(sidecar.parts.front().version);
+  report.locks = detail::locks_on(store, choose_mesh(roots, sidecar.mesh, sidecar.parts.front().version).mesh, charts);
+  return report;
 }
 
 CommitReport Repository::commit_file(const std::filesystem::path& file, const CommitOptions& options) {

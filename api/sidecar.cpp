@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "api/chart_text.h"
 #include "ramcdb/error.h"
 #include "ramcdb/region.h"
 
@@ -18,17 +19,6 @@ using nlohmann::ordered_json;
 
 constexpr int kSidecarFormat = 1;
 constexpr std::uintmax_t kMostBytes = 64 << 20;
-
-/// 1,2,3,7 as "1-3,7".
-std::string chart_list(const std::vector<ChartId>& charts) {
-  std::string text;
-  for (std::size_t i = 0, end; i < charts.size(); i = end) {
-    for (end = i + 1; end < charts.size() && charts[end].value == charts[end - 1].value + 1;) ++end;
-    text += fmt::format("{}{}", text.empty() ? "" : ",", charts[i].value);
-    if (end - i > 1) text += fmt::format("-{}", charts[end - 1].value);
-  }
-  return text;
-}
 
 /// Bytes to a temporary file beside `path`, then into its place.
 void replace_file(const std::filesystem::path& path, const std::string& text) {
@@ -64,6 +54,7 @@ Sidecar parse(const std::string& text, const std::filesystem::path& folder) {
   for (int a = 0; a < 3; ++a) s.local_origin[a] = j.at("local_origin").at(static_cast<std::size_t>(a)).get<double>();
   s.file_hash = j.at("file_hash").get<std::string>();
   s.nonce = j.at("nonce").get<std::string>();
+  s.lock = j.at("lock").get<std::uint32_t>();
   s.painted = j.at("painted").get<bool>();
   if (s.parts.empty()) throw Error(Errc::invalid_argument, "the sidecar names no charts");
   return s;
@@ -89,11 +80,12 @@ void write_sidecar(const std::filesystem::path& file, const Sidecar& sidecar) {
   j["mesh"] = sidecar.mesh;
   j["parts"] = ordered_json::array();
   for (const auto& part : sidecar.parts)
-    j["parts"].push_back({{"version", part.version.value}, {"charts", chart_list(part.charts)}});
+    j["parts"].push_back({{"version", part.version.value}, {"charts", chart_text(part.charts)}});
   j["ids_version"] = sidecar.ids_version.value;
   j["local_origin"] = {sidecar.local_origin.x, sidecar.local_origin.y, sidecar.local_origin.z};
   j["file_hash"] = sidecar.file_hash;
   j["nonce"] = sidecar.nonce;
+  j["lock"] = sidecar.lock;
   j["painted"] = sidecar.painted;
   replace_file(sidecar_path(file), j.dump(2) + "\n");
 }

@@ -20,11 +20,12 @@ struct Sidecar {
   };
   /// The version that each chart of the region was taken from: one, until a commit went in beside other people's.
   std::vector<Part> parts;
-  VersionId ids_version;  ///< the version that vertex ids in the file refer to; 0 when they are stale
-  Point local_origin;     ///< to be added to the file's coordinates
-  std::string file_hash;  ///< of the file as it was written or committed last
-  std::string nonce;      ///< names this checkout: a repeated commit of the same edit is one commit
-  bool painted = false;   ///< coloured to look at; commit refuses it
+  VersionId ids_version;   ///< the version that vertex ids in the file refer to; 0 when they are stale
+  Point local_origin;      ///< to be added to the file's coordinates
+  std::string file_hash;   ///< of the file as it was written or committed last
+  std::string nonce;       ///< names this checkout: a repeated commit of the same edit is one commit
+  std::uint32_t lock = 0;  ///< taken with this checkout, given back by its commit; 0 for none
+  bool painted = false;    ///< coloured to look at; commit refuses it
 };
 
 [[nodiscard]] std::filesystem::path sidecar_path(const std::filesystem::path& file);

@@ -1,6 +1,7 @@
 #include "cli/change_text.h"
 
 #include "cli/chart_list.h"
+#include "cli/name_text.h"
 #include "cli/table.h"
 #include "cli/text.h"
 
@@ -34,7 +35,8 @@ std::string change_text(const ChangeReport& report, const std::string& file) {
   std::string text = file + ": from " + version_text(report.base);
   if (report.tip != report.base) text += ", the tip is " + version_text(report.tip);
   text += report.clean() ? "\nnothing changed\n" : "\n" + edit_text(report);
-  return text + others_text(report);
+  text += others_text(report);
+  return report.locks.empty() ? text : text + "locks on its charts\n" + locks_text(report.locks);
 }
 
 std::string per_chart_text(const std::vector<ChangeReport::ChartChange>& changes) {

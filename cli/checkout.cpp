@@ -4,6 +4,8 @@
 #include "cli/attribute_text.h"
 #include "cli/failure.h"
 #include "cli/json_out.h"
+#include "cli/lock_options.h"
+#include "cli/name_text.h"
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/output_file_options.h"
@@ -22,6 +24,8 @@ struct CheckoutOptions {
   RegionOptions region;
   OutputFileOptions output;
   std::optional<bool> local_origin;
+  bool take_lock = false;
+  LockOptions lock;
   unsigned threads = 1;
   OutputMode mode;
 };
@@ -36,7 +40,16 @@ std::string report_text(const CheckoutReport& report, const std::string& file) {
   return file + ": " + counted(report.charts, "chart") + " of " + version_text(report.revision) + ", " +
          counted(report.vertices, "vertex", "vertices") + ", " + counted(report.faces, "face") + "; read " +
          counted(report.blobs_read, "blob") + ", " + counted(report.bytes_read, "byte") + " in " +
-         duration(report.seconds) + "\n" + origin_text(report) + left_out_text(report.left_out);
+         duration(report.seconds) + "\n" + origin_text(report) + left_out_text(report.left_out) +
+         (report.lock ? lock_report_text(*report.lock) : std::string());
+}
+
+/// Where the owner works is told by --at, when that is a branch.
+LockOptions lock_of(const CheckoutOptions& options, const Repository& repository) {
+  LockOptions lock = options.lock;
+  for (const Branch& branch : repository.branches())
+    if (branch.name == options.which.at) lock.branch = branch.name;
+  return lock;
 }
 
 CheckoutReport checkout(const CheckoutOptions& options, const Region& region) {
@@ -44,6 +57,7 @@ CheckoutReport checkout(const CheckoutOptions& options, const Region& region) {
   const Snapshot snapshot = repository.snapshot(options.which.mesh, options.which.at);
   FileOptions file = file_options_of(options.output);
   file.local_origin = options.local_origin;
+  if (options.take_lock) file.lock = lock_of(options, repository);
   file.threads = options.threads;
   ProgressBar bar("checkout", options.mode.quiet);
   file.progress = bar.callback();
@@ -80,6 +94,9 @@ void setup_checkout(CLI::App& app, Run& run) {
   verb.add_flag_callback(
           "--no-local-origin", [options] { options->local_origin = false; }, "Write coordinates whole")
       ->excludes(local);
+  CLI::Option* lock = verb.add_flag("--lock", options->take_lock, "Lock the charts until the file is committed");
+  add_lock_options(verb, options->lock, lock);
+  add_owner(verb, options->lock.owner);
   add_mesh(verb, options->which);
   add_at(verb, options->which);
   add_threads(verb, options->threads);

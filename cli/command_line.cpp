@@ -33,6 +33,11 @@ void add_verbs(CLI::App& app, Run& run) {
   setup_show(app, run);
   setup_export(app, run);
   setup_repack(app, run);
+  setup_branch(app, run);
+  setup_tag(app, run);
+  setup_lock(app, run);
+  setup_unlock(app, run);
+  setup_locks(app, run);
   setup_verify(app, run);
 }
 

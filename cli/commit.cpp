@@ -66,6 +66,7 @@ void setup_commit(CLI::App& app, Run& run) {
   add_message(verb, command->options.message, true);
   add_author(verb, command->options.author);
   verb.add_option("--branch", command->options.branch, "The branch to commit to (default: main)")->type_name("NAME");
+  verb.add_flag("--ignore-locks", command->options.ignore_locks, "Also change charts that others have locked");
   add_threads(verb, command->options.threads);
   add_output_mode(verb, command->mode);
   add_example(verb, "ramcdb commit horn.ply -m \"straighten the left horn\"");

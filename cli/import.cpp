@@ -158,6 +158,9 @@ void setup_import(CLI::App& app, Run& run) {
   verb.add_flag("--lossless-attributes", command->options.lossless_attributes,
                 "Keep colours, normals and texture coordinates that are floats bit by bit");
   add_message(verb, command->options.message, false);
+  verb.add_option("--branch", command->options.branch,
+                  "The branch to publish on; one that is not there yet begins from main (default: main)")
+      ->type_name("NAME");
   add_author(verb, command->options.author);
   add_threads(verb, command->options.threads);
   add_output_mode(verb, command->mode);

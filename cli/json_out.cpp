@@ -105,6 +105,32 @@ Json of(const ChartSummary& chart) {
           {"version", chart.version.value}};
 }
 
+Json of(const LockInfo& lock) {
+  return {{"id", lock.id},
+          {"mesh", lock.mesh},
+          {"charts", of(lock.charts)},
+          {"gone", of(lock.gone)},
+          {"owner", lock.owner},
+          {"reason", lock.reason},
+          {"branch", lock.branch},
+          {"taken", iso_time(lock.taken_us, true)},
+          {"expires", iso_time(lock.expires_us, true)}};
+}
+
+Json of(const std::vector<LockInfo>& locks) {
+  Json json = Json::array();
+  for (const LockInfo& lock : locks) json.push_back(of(lock));
+  return json;
+}
+
+Json of(const LockReport& report) { return {{"lock", of(report.lock)}, {"stolen", of(report.stolen)}}; }
+
+Json of(const std::vector<RefName>& refs) {
+  Json json = Json::array();
+  for (const RefName& ref : refs) json.push_back({{"name", ref.name}, {"kind", ref.is_tag ? "tag" : "branch"}});
+  return json;
+}
+
 Json of(const ChangeReport& report) {
   return {{"base", report.base.value},
           {"tip", report.tip.value},
@@ -119,7 +145,8 @@ Json of(const ChangeReport& report) {
           {"charts", of(report.charts_touched)},
           {"border_vertices_moved", report.border_vertices_moved},
           {"rms_displacement", report.rms_displacement},
-          {"changed_by_others", of(report.changed_by_others)}};
+          {"changed_by_others", of(report.changed_by_others)},
+          {"locks", of(report.locks)}};
 }
 
 Json of(const std::vector<ChangeReport::ChartChange>& changes) {
@@ -139,9 +166,9 @@ Json mesh_names(const VersionRecord& version) {
 }
 
 Json of(const VersionRecord& version) {
-  return {{"id", version.id.value},        {"parents", of(version.parents)},          {"branch", version.branch},
-          {"author", version.author},      {"time", iso_time(version.time_us, true)}, {"message", version.message},
-          {"meshes", mesh_names(version)}, {"charts_touched", version.charts_touched}};
+  return {{"id", version.id.value},        {"parents", of(version.parents)},           {"branch", version.branch},
+          {"author", version.author},      {"time", iso_time(version.time_us, true)},  {"message", version.message},
+          {"meshes", mesh_names(version)}, {"charts_touched", version.charts_touched}, {"refs", of(version.refs)}};
 }
 
 Json of(const VerifyReport::Problem& problem) {
@@ -189,16 +216,13 @@ std::string charts_json(const std::vector<ChartSummary>& charts, VersionId revis
 }
 
 std::string checkout_json(const CheckoutReport& report) {
-  return printed({{"revision", report.revision.value},
-                  {"charts", report.charts},
-                  {"faces", report.faces},
-                  {"vertices", report.vertices},
-                  {"bytes_read", report.bytes_read},
-                  {"blobs_read", report.blobs_read},
-                  {"seconds", report.seconds},
-                  {"pages_read", report.pages_read},
-                  {"local_origin", of(report.local_origin)},
-                  {"left_out", of(report.left_out)}});
+  Json json = {
+      {"revision", report.revision.value}, {"charts", report.charts},         {"faces", report.faces},
+      {"vertices", report.vertices},       {"bytes_read", report.bytes_read}, {"blobs_read", report.blobs_read},
+      {"seconds", report.seconds},         {"pages_read", report.pages_read}, {"local_origin", of(report.local_origin)},
+      {"left_out", of(report.left_out)}};
+  if (report.lock) json.update(of(*report.lock));
+  return printed(json);
 }
 
 std::string status_json(const ChangeReport& report) { return printed(of(report)); }
@@ -275,6 +299,32 @@ std::string show_json(const VersionRecord& version) {
   json["bytes_written"] = version.bytes_written;
   return printed(json);
 }
+
+std::string branches_json(const std::vector<Branch>& branches) {
+  Json json = {{"branches", Json::array()}};
+  for (const Branch& branch : branches)
+    json["branches"].push_back(
+        {{"name", branch.name}, {"version", branch.tip.value}, {"ahead", branch.ahead}, {"behind", branch.behind}});
+  return printed(json);
+}
+
+std::string tags_json(const std::vector<Tag>& tags) {
+  Json json = {{"tags", Json::array()}};
+  for (const Tag& tag : tags) json["tags"].push_back({{"name", tag.name}, {"version", tag.version.value}});
+  return printed(json);
+}
+
+std::string name_change_json(const NameChange& change) {
+  Json json = {{"kind", change.kind}, {"name", change.name}};
+  if (!change.before.empty()) json["before"] = change.before;
+  if (change.version) json["version"] = change.version.value;
+  json["nameless"] = of(change.nameless);
+  return printed(json);
+}
+
+std::string locks_json(const std::vector<LockInfo>& locks, const char* key) { return printed({{key, of(locks)}}); }
+
+std::string lock_json(const LockReport& report) { return printed(of(report)); }
 
 std::string verify_json(const VerifyReport& report) {
   Json json = {{"ok", report.ok()},

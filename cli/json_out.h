@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/name_text.h"
 #include "ramcdb/figures.h"
 
 /// What `--json` prints, one function per kind of report. Scripts rely on the keys: add some, never rename one. Every
@@ -26,6 +27,12 @@ namespace ramcdb::cli {
 [[nodiscard]] std::string repack_json(const RepackReport& report);
 [[nodiscard]] std::string log_json(const std::vector<VersionRecord>& versions);
 [[nodiscard]] std::string show_json(const VersionRecord& version);
+[[nodiscard]] std::string branches_json(const std::vector<Branch>& branches);
+[[nodiscard]] std::string tags_json(const std::vector<Tag>& tags);
+[[nodiscard]] std::string name_change_json(const NameChange& change);
+/// One object with the list under `key`.
+[[nodiscard]] std::string locks_json(const std::vector<LockInfo>& locks, const char* key);
+[[nodiscard]] std::string lock_json(const LockReport& report);
 [[nodiscard]] std::string verify_json(const VerifyReport& report);
 
 }  // namespace ramcdb::cli

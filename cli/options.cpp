@@ -16,6 +16,10 @@ std::string environment(const char* name) {
   return value == nullptr ? std::string() : std::string(value);
 }
 
+std::string refuse_empty(const std::string& text) { return text.empty() ? "must not be empty" : ""; }
+
+}  // namespace
+
 std::string default_author() {
   if (std::string author = environment("RAMCDB_AUTHOR"); !author.empty()) return author;
   const std::string user = environment("USER");
@@ -24,10 +28,6 @@ std::string default_author() {
   if (gethostname(host.data(), host.size() - 1) != 0 || host[0] == '\0') return user;
   return user + '@' + host.data();
 }
-
-std::string refuse_empty(const std::string& text) { return text.empty() ? "must not be empty" : ""; }
-
-}  // namespace
 
 void add_output_mode(CLI::App& verb, OutputMode& mode) {
   verb.add_flag("--json", mode.json, "Print one JSON object and nothing else");
@@ -47,7 +47,8 @@ void add_mesh(CLI::App& verb, MeshAt& which) {
 }
 
 void add_at(CLI::App& verb, MeshAt& which) {
-  verb.add_option("--at", which.at, "The version: 17, v17, a branch, HEAD, each with ~N (default: the tip of main)")
+  verb.add_option("--at", which.at,
+                  "The version: 17, v17, a branch, a tag, HEAD, each with ~N (default: the tip of main)")
       ->type_name("REV");
 }
 

@@ -38,7 +38,10 @@ void add_threads(CLI::App& verb, unsigned& threads);
 /// -m/--message, required and not empty, where `required`.
 void add_message(CLI::App& verb, std::string& message, bool required);
 
-/// --author; sets `author` to $RAMCDB_AUTHOR, else user@host, else "unknown" first.
+/// $RAMCDB_AUTHOR, else user@host, else "unknown".
+[[nodiscard]] std::string default_author();
+
+/// --author; sets `author` to default_author() first.
 void add_author(CLI::App& verb, std::string& author);
 
 /// Adds the verb's example to its help: a command line as it can be pasted.

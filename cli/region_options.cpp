@@ -36,6 +36,11 @@ void add_region(CLI::App& verb, RegionOptions& options) {
   verb.add_option("--grow", options.grow, "Then add K rings of neighbour charts")->type_name("K")->group(group);
 }
 
+bool is_empty(const RegionOptions& options) {
+  return options.boxes.empty() && options.spheres.empty() && options.charts.empty() && options.points.empty() &&
+         options.frusta.empty() && !options.all && options.grow == 0;
+}
+
 Region region_of(const RegionOptions& options, const std::string& verb) {
   Region region;
   try {

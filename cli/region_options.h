@@ -20,6 +20,9 @@ struct RegionOptions {
 
 void add_region(CLI::App& verb, RegionOptions& options);
 
+/// Whether no shape is given.
+[[nodiscard]] bool is_empty(const RegionOptions& options);
+
 /// Throws UsageError when a text is malformed or no shape is given.
 [[nodiscard]] Region region_of(const RegionOptions& options, const std::string& verb);
 

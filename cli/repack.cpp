@@ -63,6 +63,7 @@ void setup_repack(CLI::App& app, Run& run) {
   add_message(verb, command->options.message, false);
   add_author(verb, command->options.author);
   verb.add_option("--branch", command->options.branch, "The branch to commit to (default: main)")->type_name("NAME");
+  verb.add_flag("--ignore-locks", command->options.ignore_locks, "Also where others have locked charts");
   add_threads(verb, command->options.threads);
   add_output_mode(verb, command->mode);
   add_example(verb, "ramcdb repack statues.ramcdb --mesh dragon --profile fast");

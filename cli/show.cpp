@@ -4,6 +4,7 @@
 #include "cli/chart_list.h"
 #include "cli/failure.h"
 #include "cli/json_out.h"
+#include "cli/name_text.h"
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/text.h"
@@ -44,15 +45,20 @@ std::string changes_text(const VersionRecord& version) {
   return text;
 }
 
+std::string names_text(const std::vector<RefName>& refs) {
+  const std::string text = ref_text(refs);
+  return text.empty() ? "" : "\nnames      " + text.substr(2, text.size() - 3);
+}
+
 std::string version_report(const VersionRecord& version) {
   return version_text(version.id) + " (" + one_line(version.operation) + " on " + one_line(version.branch) +
-         ")\nparents    " + parents_text(version.parents) + "\nauthor     " + one_line(version.author) +
-         "\ntime       " + iso_time(version.time_us, true) + "\n\n" + message_text(version.message) + "\n" +
-         changes_text(version) + "charts touched    " + grouped(version.charts_touched) + "\nvertices moved    " +
-         grouped(version.vertices_moved) + "\nvertices added    " + grouped(version.vertices_added) +
-         "\nvertices removed  " + grouped(version.vertices_removed) + "\nlargest move      " +
-         model_units(version.max_displacement) + " (model units)\nbytes written     " + grouped(version.bytes_written) +
-         "\n";
+         ")\nparents    " + parents_text(version.parents) + names_text(version.refs) + "\nauthor     " +
+         one_line(version.author) + "\ntime       " + iso_time(version.time_us, true) + "\n\n" +
+         message_text(version.message) + "\n" + changes_text(version) + "charts touched    " +
+         grouped(version.charts_touched) + "\nvertices moved    " + grouped(version.vertices_moved) +
+         "\nvertices added    " + grouped(version.vertices_added) + "\nvertices removed  " +
+         grouped(version.vertices_removed) + "\nlargest move      " + model_units(version.max_displacement) +
+         " (model units)\nbytes written     " + grouped(version.bytes_written) + "\n";
 }
 
 int run_show(const ShowOptions& options) {

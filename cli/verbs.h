@@ -27,6 +27,11 @@ void setup_log(CLI::App& app, Run& run);
 void setup_show(CLI::App& app, Run& run);
 void setup_export(CLI::App& app, Run& run);
 void setup_repack(CLI::App& app, Run& run);
+void setup_branch(CLI::App& app, Run& run);
+void setup_tag(CLI::App& app, Run& run);
+void setup_lock(CLI::App& app, Run& run);
+void setup_unlock(CLI::App& app, Run& run);
+void setup_locks(CLI::App& app, Run& run);
 void setup_verify(CLI::App& app, Run& run);
 
 }  // namespace ramcdb::cli

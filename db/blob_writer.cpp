@@ -11,6 +11,7 @@
 #include "db/file_system.h"
 #include "db/key_list.h"
 #include "db/recovery.h"
+#include "db/ref_name.h"
 #include "db/store_impl.h"
 #include "db/store_state.h"
 #include "ramcdb/error.h"
@@ -62,7 +63,7 @@ class Attempt : public Writer {
   }
 
   VersionId version() const override { return VersionId(state_.seq); }
-  VersionId tip(std::string_view branch) override { return catalogue_.ref(branch).value_or(VersionId()); }
+  VersionId tip(std::string_view branch) override { return catalogue_.refs().tip(branch); }
 
   MeshId new_mesh_id() override {
     if (state_.last_mesh == 0xFFFF)
@@ -88,6 +89,7 @@ class Attempt : public Writer {
 
   VersionId publish(const CommitInfo& info) override {
     if (const auto earlier = catalogue_.published_by(info.attempt)) return *earlier;
+    if (!info.expected_tip) require_ref_name(info.branch);
     if (const VersionId now = tip(info.branch); now != info.expected_tip)
       throw Error(Errc::conflict, fmt::format("branch {} moved to version {}", info.branch, now.value),
                   fmt::format("expected version {}", info.expected_tip.value), "check out again");

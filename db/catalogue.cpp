@@ -26,10 +26,6 @@ constexpr const char* kSchema = R"(
     parents TEXT NOT NULL,
     roots BLOB NOT NULL,
     changed BLOB NOT NULL);
-  CREATE TABLE ref(
-    name TEXT PRIMARY KEY,
-    kind TEXT NOT NULL CHECK(kind IN ('branch', 'tag')),
-    version INTEGER NOT NULL REFERENCES version(id)) WITHOUT ROWID;
 )";
 
 constexpr const char* kInfoColumns = "id, branch, author, message, time_us, attempt, figures, parents";
@@ -71,7 +67,7 @@ void Catalogue::create(const std::filesystem::path& file, std::string_view repos
   db.run("PRAGMA page_size = 512; PRAGMA journal_mode = WAL");
   DatabaseTransaction transaction(db);
   db.run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kApplicationId, kSchemaVersion));
-  db.run(kSchema);
+  for (const char* schema : {kSchema, RefTable::kSchema, LockTable::kSchema}) db.run(schema);
   db.prepare("INSERT INTO repository(id) VALUES(?)").bind(1, repository_id).step();
   transaction.commit();
   db.checkpoint();
@@ -90,12 +86,6 @@ std::string Catalogue::repository_id() { return database_.text("SELECT id FROM r
 
 VersionId Catalogue::newest() {
   return VersionId(static_cast<std::uint32_t>(database_.integer("SELECT coalesce(max(id), 0) FROM version")));
-}
-
-VersionId Catalogue::newest_of(std::string_view branch) {
-  Statement s = database_.prepare("SELECT coalesce(max(id), 0) FROM version WHERE branch = ?");
-  s.bind(1, branch);
-  return VersionId(s.step() ? static_cast<std::uint32_t>(s.integer(0)) : 0);
 }
 
 std::optional<VersionInfo> Catalogue::version(VersionId id) {
@@ -136,18 +126,10 @@ std::optional<VersionId> Catalogue::published_by(std::string_view attempt) {
   return VersionId(static_cast<std::uint32_t>(s.integer(0)));
 }
 
-std::vector<Ref> Catalogue::refs() {
-  std::vector<Ref> refs;
-  for (Statement s = database_.prepare("SELECT name, kind, version FROM ref ORDER BY kind, name"); s.step();)
-    refs.push_back({s.text(0), s.text(1) == "tag", VersionId(static_cast<std::uint32_t>(s.integer(2)))});
-  return refs;
-}
-
-std::optional<VersionId> Catalogue::ref(std::string_view name) {
-  Statement s = database_.prepare("SELECT version FROM ref WHERE name = ?");
-  s.bind(1, name);
-  if (!s.step()) return std::nullopt;
-  return VersionId(static_cast<std::uint32_t>(s.integer(0)));
+std::vector<VersionId> Catalogue::parents(VersionId id) {
+  Statement s = database_.prepare("SELECT parents FROM version WHERE id = ?");
+  s.bind(1, std::int64_t{id.value});
+  return s.step() ? parents_of(s.text(0)) : std::vector<VersionId>{};
 }
 
 void Catalogue::insert(const CommitRecord& record) {
@@ -162,15 +144,13 @@ void Catalogue::insert(const CommitRecord& record) {
 
 void Catalogue::publish(const CommitRecord& record, VersionId expected_tip) {
   DatabaseTransaction transaction(database_);
-  const VersionId tip = ref(record.info.branch).value_or(VersionId());
+  const VersionId tip = refs().tip(record.info.branch);
   if (tip != expected_tip)
     throw Error(Errc::conflict, fmt::format("branch {} moved to version {}", record.info.branch, tip.value),
                 fmt::format("expected version {}", expected_tip.value), "check out again");
   insert(record);
-  Statement s = database_.prepare(
-      "INSERT INTO ref(name, kind, version) VALUES(?1, 'branch', ?2) ON CONFLICT(name) DO UPDATE SET version = ?2");
-  s.bind(1, record.info.branch).bind(2, std::int64_t{record.info.id.value});
-  s.step();
+  refs().set({record.info.branch, false, record.info.id});
+  locks().sweep(record.info.time_us);
   fail_point("row.before_commit");
   transaction.commit();
 }
@@ -179,8 +159,6 @@ std::vector<std::string> Catalogue::integrity_problems() {
   std::vector<std::string> problems;
   for (Statement s = database_.prepare("PRAGMA integrity_check"); s.step();)
     if (s.text(0) != "ok") problems.push_back(s.text(0));
-  for (Statement s = database_.prepare("PRAGMA foreign_key_check"); s.step();)
-    problems.push_back("a " + s.text(0) + " names a version that does not exist");
   return problems;
 }
 

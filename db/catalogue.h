@@ -1,26 +1,22 @@
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "db/commit_record.h"
+#include "db/fail_points.h"
+#include "db/lock_table.h"
+#include "db/ref_table.h"
 #include "db/sqlite.h"
 
 /// The SQLite half of a repository: which versions are published, and what they are called.
 ///
 ///     repository(id)                                      one row
 ///     version(id, branch, author, message, time_us, attempt, figures, parents, roots, changed)
-///     ref(name, kind, version)                            branches and tags
+///     ref, lock                                           in their own headers
 namespace ramcdb::db {
-
-struct Ref {
-  std::string name;
-  bool is_tag = false;
-  VersionId version;
-};
 
 /// For one thread at a time.
 class Catalogue {
@@ -33,18 +29,31 @@ class Catalogue {
 
   [[nodiscard]] std::string repository_id();
   [[nodiscard]] VersionId newest();  ///< the largest number of a published version
-  [[nodiscard]] VersionId newest_of(std::string_view branch);
   [[nodiscard]] std::optional<VersionInfo> version(VersionId id);
   [[nodiscard]] std::optional<CommitRecord> record(VersionId id);
   [[nodiscard]] std::vector<MeshRoot> roots(VersionId id);
   [[nodiscard]] std::vector<ChangedCharts> changed(VersionId id);
   [[nodiscard]] std::vector<VersionId> all_versions();
   [[nodiscard]] std::optional<VersionId> published_by(std::string_view attempt);
-  [[nodiscard]] std::vector<Ref> refs();
-  [[nodiscard]] std::optional<VersionId> ref(std::string_view name);
+  /// None for a version that is not there.
+  [[nodiscard]] std::vector<VersionId> parents(VersionId id);
+  [[nodiscard]] RefTable refs() { return RefTable(database_); }
+  [[nodiscard]] LockTable locks() { return LockTable(database_); }
 
-  /// Publishes a version as the new tip of its branch, in one durable transaction. Throws conflict, and changes
-  /// nothing, when the branch's tip is not `expected_tip`.
+  /// Calls `change`, which may use refs() and locks(), and makes what it did durable, all or nothing.
+  template <class Change>
+  auto change_names(Change&& change) {
+    DatabaseTransaction transaction(database_);
+    auto result = change();
+    fail_point("names.before_commit");
+    transaction.commit();
+    fail_point("names.committed");
+    checkpoint();
+    return result;
+  }
+
+  /// Publishes a version as the new tip of its branch, in one durable transaction, and sweeps expired locks. Throws
+  /// conflict, and changes nothing, when the branch's tip is not `expected_tip`.
   void publish(const CommitRecord& record, VersionId expected_tip);
 
   void checkpoint() { database_.checkpoint(); }

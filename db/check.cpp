@@ -65,13 +65,10 @@ void check_record(const Transaction& transaction, Catalogue& catalogue, VersionI
   }
 }
 
-/// A branch is at the newest version that was published on it.
-void check_branches(Catalogue& catalogue, const Found& found) {
-  for (const Ref& ref : catalogue.refs())
-    if (const VersionId newest = catalogue.newest_of(ref.name); !ref.is_tag && newest != ref.version)
-      found({"catalogue", std::nullopt,
-             fmt::format("branch {} is at version {}, its newest version is {}", ref.name, ref.version.value,
-                         newest.value)});
+/// Every name leads to a version that is there; every lock names charts.
+void check_names(Catalogue& catalogue, const Found& found) {
+  for (const std::string& problem : catalogue.refs().problems()) found({"catalogue", std::nullopt, problem});
+  for (const std::string& problem : catalogue.locks().problems()) found({"catalogue", std::nullopt, problem});
 }
 
 /// Blobs that no published version wrote. While a writer is at work its own are such, and no problem.
@@ -104,7 +101,7 @@ std::uint64_t check_halves(Environment& environment, Catalogue& catalogue, std::
     else if (version > VersionId(read_state(*environment.read()).seq))
       found({"missing", std::nullopt, fmt::format("version {} has lost its blobs", version.value)});
   }
-  check_branches(catalogue, found);
+  check_names(catalogue, found);
   const std::uint64_t count = check_blobs(*transaction, found);
   check_leftovers(*transaction, versions.empty() ? VersionId() : *versions.rbegin(), versions, found);
   return count;

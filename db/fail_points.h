@@ -13,6 +13,9 @@
 ///     row.committed        the version is published, nobody knows yet
 ///     recovery.begin       a crash's leftovers were found
 ///     recovery.deleted     they are gone
+///     names.locked         the writer lock is held for a change of branches, tags or chart locks
+///     names.before_commit  the change is made, its transaction is open
+///     names.committed      it is durable, nobody knows yet
 namespace ramcdb::db {
 
 using FailHook = std::function<void(std::string_view point)>;

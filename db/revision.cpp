@@ -21,7 +21,7 @@ std::optional<std::uint32_t> number_in(std::string_view text) {
 
 std::string known_names(Catalogue& catalogue) {
   std::string names;
-  for (const Ref& ref : catalogue.refs()) names += (names.empty() ? "" : ", ") + ref.name;
+  for (const Ref& ref : catalogue.refs().all()) names += (names.empty() ? "" : ", ") + ref.name;
   const VersionId newest = catalogue.newest();
   if (!newest) return "nothing is published yet";
   return fmt::format("there are versions up to {} and {}", newest.value, names);
@@ -35,19 +35,30 @@ VersionId first_parent(Catalogue& catalogue, VersionId version, std::string_view
   return info->parents.front();
 }
 
+[[noreturn]] void refuse_lost(VersionId version) {
+  throw Error(Errc::corrupt, fmt::format("version {} has lost its blobs", version.value), {},
+              "restore both files from the same backup");
+}
+
+/// Where blobs were lost a branch goes on with its newest version that is whole; a tag stands for one version only.
+VersionId version_of(Catalogue& catalogue, const Ref& ref, std::string_view revision,
+                     const std::function<bool(VersionId)>& has_blobs) {
+  VersionId version = ref.version;
+  while (!has_blobs(version)) {
+    if (ref.is_tag) refuse_lost(version);
+    version = first_parent(catalogue, version, revision);
+  }
+  return version;
+}
+
 VersionId named_version(Catalogue& catalogue, std::string_view name, std::string_view revision,
                         const std::function<bool(VersionId)>& has_blobs) {
   if (name.empty() || name == "HEAD") name = "main";
-  if (auto version = catalogue.ref(name)) {
-    // Where blobs were lost a branch goes on with the newest version that is whole.
-    while (!has_blobs(*version)) version = first_parent(catalogue, *version, revision);
-    return *version;
-  }
+  if (const auto ref = catalogue.refs().find(name)) return version_of(catalogue, *ref, revision, has_blobs);
   const auto number = number_in(name.starts_with('v') ? name.substr(1) : name);
   if (number && catalogue.version(VersionId(*number))) {
     if (has_blobs(VersionId(*number))) return VersionId(*number);
-    throw Error(Errc::corrupt, fmt::format("version {} has lost its blobs", *number), {},
-                "restore both files from the same backup");
+    refuse_lost(VersionId(*number));
   }
   if (name == "main") return VersionId();
   throw Error(Errc::not_found, fmt::format("there is no revision '{}'", revision), {}, known_names(catalogue));

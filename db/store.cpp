@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "db/blob_parts.h"
+#include "db/fail_points.h"
 #include "db/file_lock.h"
 #include "db/file_system.h"
 #include "db/pins.h"
@@ -23,6 +24,8 @@ namespace ramcdb::db {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr double kWriterWaitSeconds = 600;
 
 class TransactionReader : public BlobReader {
  public:
@@ -244,6 +247,18 @@ std::vector<ChangedCharts> StoreImpl::changed(VersionId id) {
 
 std::optional<VersionId> StoreImpl::published_by(std::string_view attempt) {
   return with_catalogue([&](Catalogue& c) { return c.published_by(attempt); });
+}
+
+FileLock StoreImpl::take_writer_lock() {
+  environment_.require_own_process();
+  if (!writable())
+    throw Error(Errc::storage, "the repository is not writable", layout_.folder.string(),
+                "check the permissions of the folder and its files");
+  require_local(layout_.folder);
+  FileLock lock = FileLock::take(layout_.lock, kWriterWaitSeconds);
+  lock.write_note(fmt::format("process {}\n", ::getpid()));
+  fail_point("names.locked");
+  return lock;
 }
 
 std::unique_ptr<Pin> StoreImpl::pin(VersionId id, std::string_view holder) {

@@ -6,10 +6,13 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "db/chart_lock.h"
+#include "db/ref.h"
 #include "ramcdb/bytes.h"
 #include "ramcdb/ids.h"
 
@@ -94,13 +97,68 @@ class Store {
   [[nodiscard]] virtual VersionId resolve(std::string_view revision) = 0;
   [[nodiscard]] virtual VersionInfo version(VersionId id) = 0;
   [[nodiscard]] virtual std::vector<MeshRoot> roots(VersionId id) = 0;  ///< by name; empty for version 0
-  /// Newest first along first parents and merges, from `from`; at most `limit` of them.
+  /// What `from` descends from, itself included, each version once, newest first; at most `limit` of them.
   [[nodiscard]] virtual std::vector<VersionInfo> history(VersionId from, std::size_t limit) = 0;
   /// Every published version of every branch, ascending.
   [[nodiscard]] virtual std::vector<VersionId> all_versions() = 0;
   [[nodiscard]] virtual std::vector<ChangedCharts> changed(VersionId id) = 0;
   /// The version that this attempt published, if it did: the answer to a commit whose answer got lost.
   [[nodiscard]] virtual std::optional<VersionId> published_by(std::string_view attempt) = 0;
+
+  // The version graph. Version 0 stands for an empty history.
+
+  /// The best common ancestor: one from which no other common ancestor descends; the newest where several are
+  /// (criss-cross merges). A version is its own ancestor. 0 when there is none.
+  [[nodiscard]] virtual VersionId merge_base(VersionId a, VersionId b) = 0;
+  [[nodiscard]] virtual bool is_ancestor(VersionId old, VersionId version) = 0;
+  /// What `from` descends from, itself included, and none of `others` does, ascending.
+  [[nodiscard]] virtual std::vector<VersionId> only_in(VersionId from, const std::vector<VersionId>& others) = 0;
+
+  // Names. Changes take the writer lock, so never from a thread that holds a Writer; each is durable when it returns,
+  // all or nothing, and touches no blob. They throw invalid_argument for a name that is none (db/ref_name.h), is taken
+  // or is of the other kind; not_found; corrupt for a version that has lost its blobs; storage. Where they return
+  // versions, these are the ones that no name leads to any more: they can still be had by number.
+
+  /// Branches first, then tags, each by name.
+  [[nodiscard]] virtual std::vector<Ref> refs() = 0;
+  /// The tip of a branch, 0 when there is no such branch. Throws invalid_argument for a tag.
+  [[nodiscard]] virtual VersionId tip(std::string_view branch) = 0;
+  /// \param force moves a branch that exists
+  /// \param expected compare-and-swap: throws conflict unless the branch is there (0: is not), and moves it
+  virtual std::vector<VersionId> create_branch(std::string_view name, VersionId at, bool force,
+                                               std::optional<VersionId> expected = {}) = 0;
+  /// Versions keep the name of the branch that they were published on. main keeps its name.
+  virtual void rename_branch(std::string_view from, std::string_view to) = 0;
+  /// Refuses main and, without `force`, a branch whose versions would be left without a name.
+  virtual std::vector<VersionId> delete_branch(std::string_view name, bool force) = 0;
+  /// \param force has a tag that exists name another version
+  virtual std::vector<VersionId> create_tag(std::string_view name, VersionId at, bool force) = 0;
+  virtual std::vector<VersionId> delete_tag(std::string_view name) = 0;
+
+  // Advisory locks on charts, by whatever the callers call a time (UTC, microseconds): an expired lock does not count
+  // and goes with the next change. Changes are as those of names.
+
+  /// Those that count, by id.
+  [[nodiscard]] virtual std::vector<ChartLock> locks(std::int64_t now_us) = 0;
+  /// Those of other owners on any of `charts` (ascending), each cut down to them.
+  [[nodiscard]] virtual std::vector<ChartLock> locks_against(MeshId mesh, std::span<const ChartId> charts,
+                                                             std::string_view owner, std::int64_t now_us) = 0;
+  struct LockTaken {
+    ChartLock lock;                 ///< with its id
+    std::vector<ChartLock> others;  ///< what others hold of these charts: in the way, or stolen from them
+    bool done = false;
+  };
+  /// Takes a lock from its `taken_us` on, unless charts are locked by other owners; `steal` takes these away from them.
+  /// An owner may hold a chart twice.
+  [[nodiscard]] virtual LockTaken lock(const ChartLock& wanted, bool steal) = 0;
+  struct Unlocked {
+    std::vector<ChartLock> released;  ///< each with the charts that are free of it now
+    std::vector<ChartLock> others;    ///< of other owners, left as they are
+  };
+  /// Gives back what `owner` holds; with `force` what anybody does. Nothing is released where one lock or some charts
+  /// are asked for and others hold them.
+  [[nodiscard]] virtual Unlocked unlock(const LockSelection& which, std::string_view owner, bool force,
+                                        std::int64_t now_us) = 0;
 
   /// Keeps a version from being pruned until the pin is destroyed or its process is gone.
   [[nodiscard]] virtual std::unique_ptr<Pin> pin(VersionId id, std::string_view holder) = 0;
@@ -150,8 +208,9 @@ class BlobReader {
 
 struct CommitInfo {
   std::string branch = "main";
-  VersionId expected_tip;          ///< tip of the branch that this commit was decided on (compare-and-swap)
-  std::vector<VersionId> parents;  ///< as a rule {expected_tip}; empty on an empty branch
+  VersionId expected_tip;  ///< tip of the branch that this commit was decided on (compare-and-swap)
+  std::vector<VersionId>
+      parents;  ///< as a rule {expected_tip}; any others make a new branch (expected_tip 0) from them
   std::string author;
   std::string message;
   std::string attempt;  ///< from new_attempt_id(), unique
@@ -166,7 +225,8 @@ class Writer {
   virtual ~Writer() = default;
 
   [[nodiscard]] virtual VersionId version() const = 0;  ///< the number this attempt gets, never used before
-  [[nodiscard]] virtual VersionId tip(std::string_view branch) = 0;  ///< version 0: nothing published there yet
+  /// Version 0: there is no such branch yet. Throws invalid_argument for a tag.
+  [[nodiscard]] virtual VersionId tip(std::string_view branch) = 0;
   /// A new id for a mesh. Throws limit_exceeded after 65,535 of them.
   [[nodiscard]] virtual MeshId new_mesh_id() = 0;
 
@@ -177,8 +237,9 @@ class Writer {
   virtual void flush() = 0;
   [[nodiscard]] virtual std::uint64_t bytes_put() const = 0;  ///< of all blobs of this attempt, checksums included
 
-  /// The commit point. Returns the version. Throws conflict when the branch's tip is not `expected_tip` any more,
-  /// disk_full ("need N, have M"), storage. Nothing of a failed publish is ever visible.
+  /// The commit point. Returns the version. A branch that is not there yet is made, from whatever parents. Throws
+  /// conflict when the branch's tip is not `expected_tip` any more, invalid_argument for a name that no branch may
+  /// have, disk_full ("need N, have M"), storage. Nothing of a failed publish is ever visible.
   [[nodiscard]] virtual VersionId publish(const CommitInfo& info) = 0;
 };
 

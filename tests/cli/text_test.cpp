@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "cli/chart_list.h"
+#include "cli/name_text.h"
 #include "cli/progress_line.h"
 #include "cli/table.h"
 
@@ -87,6 +88,19 @@ TEST(ProgressLine, MakesNothingUpBeforeTheFirstReport) {
             "verify  [---------]   0 %");
   EXPECT_THAT(progress_line({.verb = "verify", .stage = "", .done = 0, .stage_seconds = 3}, 79),
               Not(HasSubstr("left")));
+}
+
+TEST(Text, TimesThatLocksLast) {
+  const std::pair<const char*, std::int64_t> cases[] = {{"1s", 1},       {"90m", 5400},
+                                                        {"2h", 7200},    {"3d", 259'200},
+                                                        {"1w", 604'800}, {"3650d", 315'360'000},
+                                                        {"3651d", 0},    {"99999999999999999999h", 0},
+                                                        {"0h", 0},       {"-1h", 0},
+                                                        {"", 0},         {"h", 0},
+                                                        {"2", 0},        {"2x", 0},
+                                                        {"2hh", 0},      {"2 h", 0},
+                                                        {"1.5h", 0}};
+  for (const auto& [text, seconds] : cases) EXPECT_EQ(seconds_of(text), seconds) << text;
 }
 
 }  // namespace

@@ -180,7 +180,7 @@ TEST_F(Damage, ARowThatIsGoneLeavesOrphansForCheckToFind) {
 TEST_F(Damage, ABranchThatPointsElsewhereIsFoundByCheck) {
   Database(temp_ / "catalogue.sqlite", Database::Mode::write).run("UPDATE ref SET version = 2 WHERE name = 'main'");
   EXPECT_EQ(problems(*temp_.open()),
-            std::vector<std::string>{"catalogue: branch main is at version 2, its newest version is 3"});
+            std::vector<std::string>{"catalogue: what branch main names is damaged: it says version 2"});
   Database(temp_ / "catalogue.sqlite", Database::Mode::write)
       .run("PRAGMA foreign_keys = OFF; UPDATE ref SET version = 8 WHERE name = 'main'");
   EXPECT_FALSE(problems(*temp_.open()).empty());

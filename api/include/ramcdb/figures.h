@@ -9,6 +9,7 @@
 #include "ramcdb/attributes.h"
 #include "ramcdb/geometry.h"
 #include "ramcdb/ids.h"
+#include "ramcdb/names.h"
 
 /// What operations report: plain values, printed by the command line and checked by tests.
 namespace ramcdb {
@@ -75,8 +76,9 @@ struct VersionRecord {
   VersionId id;
   std::vector<VersionId> parents;
   std::string branch, author, message;
-  std::int64_t time_us = 0;  ///< UTC, microseconds since 1970
-  std::string operation;     ///< "import", "commit"
+  std::int64_t time_us = 0;   ///< UTC, microseconds since 1970
+  std::string operation;      ///< "import", "commit"
+  std::vector<RefName> refs;  ///< branches and tags that name it now
   struct MeshChange {
     std::string mesh;
     std::vector<ChartId> charts;  ///< charts that the version wrote, ascending
@@ -108,6 +110,7 @@ struct CheckoutReport {
   std::uint64_t bytes_read = 0, blobs_read = 0, pages_read = 0;
   std::vector<ImportReport::Dropped> left_out;  ///< what the file's format cannot hold
   Point local_origin;                           ///< what the file's coordinates are relative to, model units
+  std::optional<LockReport> lock;               ///< that was taken with it
   double seconds = 0;
 };
 
@@ -130,6 +133,7 @@ struct ChangeReport {
   std::vector<ChartChange> per_chart;
   std::vector<ChartId> changed_by_others;  ///< charts of the region that newer versions changed
   std::vector<ChartId> conflicts;          ///< of these, the ones that this edit touches too
+  std::vector<LockInfo> locks;             ///< on charts of the region, whoever holds them
   [[nodiscard]] bool clean() const {
     return vertices_moved + vertices_added + vertices_removed + faces_added + faces_removed + values_changed == 0;
   }

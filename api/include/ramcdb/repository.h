@@ -10,6 +10,7 @@
 
 #include "ramcdb/error.h"
 #include "ramcdb/figures.h"
+#include "ramcdb/names.h"
 #include "ramcdb/snapshot.h"
 
 namespace ramcdb {
@@ -44,8 +45,8 @@ struct ImportOptions {
   ChartProfile profile = ChartProfile::dense;
   std::string message;  ///< "import FILE" when empty
   std::string author;
-  std::string branch = "main";
-  unsigned threads = 1;  ///< changes the time, never the bytes
+  std::string branch = "main";  ///< one that is not there yet begins from main
+  unsigned threads = 1;         ///< changes the time, never the bytes
   Progress progress;
 };
 
@@ -58,6 +59,7 @@ struct FileOptions {
   /// Checkout: write coordinates relative to a point near the region, which the sidecar keeps and commit adds again?
   /// When not said: where float32 (or in text formats six digits) cannot hold the coordinates, but can so.
   std::optional<bool> local_origin;
+  std::optional<LockOptions> lock;  ///< checkout: lock the charts first; the file's commit gives the lock back
   unsigned threads = 1;
   Progress progress;
 };
@@ -68,6 +70,7 @@ struct CommitOptions {
   std::string branch = "main";
   unsigned threads = 1;
   Progress progress;
+  bool ignore_locks = false;  ///< change charts that others than `author` have locked
 };
 
 struct RepackOptions {
@@ -77,6 +80,7 @@ struct RepackOptions {
   std::string branch = "main";
   unsigned threads = 1;
   Progress progress;
+  bool ignore_locks = false;  ///< change charts that others than `author` have locked
 };
 
 /// A repository of meshes with their history: a folder. Cheap to copy; copies are the same repository. Thread-safe.
@@ -100,7 +104,50 @@ class Repository {
   /// Newest first, at most `limit`, those that changed `mesh` when it is not empty.
   [[nodiscard]] std::vector<VersionRecord> log(std::string_view revision = {}, std::size_t limit = ~std::size_t{0},
                                                std::string_view mesh = {}) const;
+  /// Of these, the versions of a mesh (may be empty where `revision` holds just one) that touched a region: that
+  /// changed a chart whose bounding box, before or after, meets one of the region's shapes, or one of the charts that
+  /// it names. NearestTo and `grow` stand for charts as of `revision`. Reads index pages above changed charts only.
+  [[nodiscard]] std::vector<VersionRecord> log_of_region(const Region& region, std::string_view revision = {},
+                                                         std::size_t limit = ~std::size_t{0},
+                                                         std::string_view mesh = {}) const;
   [[nodiscard]] VersionRecord show(std::string_view revision) const;
+
+  // Branches and tags: names for versions. A branch moves with what is committed on it, a tag stays. Names are as
+  // git's: at most 200 bytes, no spaces, control characters, `~^:?*[\`, `..`; not HEAD, 17 or v17; and no branch and
+  // tag share one. Changes wait for the writer at work, are durable when they return, all or nothing, and cost no blob.
+  // They throw invalid_argument for a name that is none, is taken or is of the other kind, not_found, corrupt for a
+  // version that has lost its blobs, storage. Where they return versions, these are the ones that no name leads to any
+  // more, ascending: they stay, and can be had by number.
+
+  /// By name.
+  [[nodiscard]] std::vector<Branch> branches() const;
+  [[nodiscard]] std::vector<Tag> tags() const;
+  /// At a revision (empty: HEAD). `force` moves a branch that is there.
+  std::vector<VersionId> create_branch(std::string_view name, std::string_view at = {}, bool force = false);
+  /// Throws invalid_argument for main and, unless `force`, where versions would be left without a name.
+  std::vector<VersionId> delete_branch(std::string_view name, bool force = false);
+  /// Versions keep the name of the branch that they were published on. Throws invalid_argument for main.
+  void rename_branch(std::string_view from, std::string_view to);
+  /// `force` has a tag that is there name another version.
+  std::vector<VersionId> create_tag(std::string_view name, std::string_view at = {}, bool force = false);
+  std::vector<VersionId> delete_tag(std::string_view name);
+
+  // Advisory locks on charts. A commit that changes charts which others than its author have locked is refused
+  // (conflict), unless it ignores locks. They name charts by id, on all branches: charts that a later edit makes of a
+  // locked one are not locked. They end by the wall clock (UTC).
+
+  /// Locks charts of a snapshot's mesh. Throws conflict, naming owners, where others hold one of them and not
+  /// `options.steal`; invalid_argument without owner, or for more than ten years.
+  LockReport lock(const Snapshot& snapshot, const std::vector<ChartId>& charts, const LockOptions& options);
+  /// Gives back what `owner` holds of these charts, or one lock; with `force` what anybody does. Returns what was
+  /// locked and is free of that lock now. Throws not_found when nothing was, conflict when others hold some of it.
+  std::vector<LockInfo> unlock(const Snapshot& snapshot, const std::vector<ChartId>& charts, const std::string& owner,
+                               bool force = false);
+  std::vector<LockInfo> unlock(std::uint32_t id, const std::string& owner, bool force = false);
+  /// All of `owner`; with `force` everybody's.
+  std::vector<LockInfo> unlock_all(const std::string& owner, bool force = false);
+  /// Those that count now, by id.
+  [[nodiscard]] std::vector<LockInfo> locks() const;
 
   /// Adds the mesh of a file as one version. Throws invalid_argument for a file that cannot be taken whole.
   ImportReport import(const std::filesystem::path& file, const ImportOptions& options);
@@ -111,6 +158,7 @@ class Repository {
 
   /// Writes a region as an ordinary mesh file and its sidecar `FILE.ramcdb.json` beside it, from which commit_file and
   /// status_file know where it came from.
+  /// `options.lock` locks the charts, as lock() does, before anything is written.
   CheckoutReport checkout_file(const Snapshot& snapshot, const std::vector<ChartId>& charts,
                                const std::filesystem::path& file, const FileOptions& options) const;
 
