@@ -101,17 +101,6 @@ void expect_all_survive(const RegionMesh& region, const EditedRegion& edited, bo
     }
 }
 
-/// A closed surface without any symmetry in its connectivity.
-RegionMesh irregular(std::size_t faces) {
-  RegionMesh smooth = region_of(sphere(faces));
-  EditedRegion edited(smooth);
-  edited.remesh(0.5, 99);
-  TestMesh mesh;
-  for (const LatticePoint p : edited.points) mesh.positions.push_back({double(p.x), double(p.y), double(p.z)});
-  for (std::size_t f = 0; f < edited.face_count(); ++f) mesh.faces.push_back(edited.triangle(f));
-  return region_of(mesh);
-}
-
 TEST(RegionMatch, ReorderedIsUnchanged) {
   for (const Named& m : all_meshes())
     for (const bool ids : {false, true}) {
@@ -167,7 +156,7 @@ TEST(RegionMatch, AllMovedInOrderIsMoved) {
 }
 
 TEST(RegionMatch, AllMovedAndReorderedIsFoundByItsConnectivity) {
-  const RegionMesh region = irregular(6000);
+  const RegionMesh region = region_of(irregular(sphere(6000)));
   EditedRegion edited(region);
   edited.move([](std::uint32_t) { return true; });
   edited.shuffle(11);
