@@ -107,9 +107,8 @@ std::vector<OrderedPairs> pairs_by_order(const MatchState& state) {
       return {};
   }
   for (std::uint32_t w = 0; w < state.to.points.size(); ++w) {
-    const std::uint32_t place = places.to[w];
-    if (ordered.pairs.from(w) == kNowhere || places.count_from[place] != 1) continue;
-    ordered.contradictions += places.first_from[place] != ordered.pairs.from(w);
+    const std::uint32_t v = ordered.pairs.from(w), place = places.to[w];
+    ordered.contradictions += v != kNowhere && places.from[v] != place && places.count_from[place] > 0;
   }
   return {std::move(ordered)};
 }

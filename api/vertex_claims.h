@@ -37,7 +37,7 @@ class VertexClaims {
 /// Vertices as told by faces in unchanged order.
 struct OrderedPairs {
   VertexPairs pairs;
-  std::uint64_t contradictions = 0;  ///< vertices that alone lie where another vertex alone lay
+  std::uint64_t contradictions = 0;  ///< vertices that lie where other ones lay
 };
 /// Empty where the files' faces do not go with each other one by one, with a vertex for each vertex.
 [[nodiscard]] std::vector<OrderedPairs> pairs_by_order(const MatchState& state);

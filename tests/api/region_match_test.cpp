@@ -253,6 +253,20 @@ TEST(RegionMatch, AlikeComponentsThatChangePlacesInTheFileStayInPlace) {
   expect_true(region, swapped, false);
 }
 
+/// Any order of single triangles fits any other, and where they share points, none of these tells them apart.
+TEST(RegionMatch, SingleTrianglesThatChangePlacesInTheFileStayInPlace) {
+  TestMesh mesh;
+  for (std::uint32_t f = 0; f < 6; ++f) {
+    const double a = f / 2, b = f % 3 + 7, c = 20 + f % 2;
+    mesh.positions.insert(mesh.positions.end(), {Point{a, 0, 0}, Point{b, 1, 0}, Point{c, 0, 5}});
+    mesh.faces.push_back({3 * f, 3 * f + 1, 3 * f + 2});
+  }
+  const RegionMesh region = region_of(mesh);
+  EditedRegion edited(region);
+  std::rotate(edited.points.begin(), edited.points.begin() + 6, edited.points.end());
+  expect_all_survive(region, edited, false, true);
+}
+
 TEST(RegionMatch, ATornVertexIsOneOfItsPieces) {
   const RegionMesh region = region_of(terrain(12, 9));
   for (const bool ids : {false, true}) {
