@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "api/local_order.h"
 #include "api/match_walk.h"
 #include "api/vertex_claims.h"
 
@@ -10,15 +11,13 @@ namespace {
 
 /// Ids may be left over from other vertices, as where a tool sorted these without them: then places tell more.
 void pair_by_claims(MatchState& state, std::vector<std::uint32_t> ids) {
-  VertexClaims by_place(state, claims_by_place(state));
   if (!ids.empty()) {
     const VertexClaims by_id(state, std::move(ids));
     const std::uint64_t most = std::min(state.from.face_count(), state.to.face_count());
-    if (by_id.faces() * 2 >= most || by_id.faces() >= by_place.faces()) {
+    if (by_id.faces() * 2 >= most || by_id.faces() >= VertexClaims(state, claims_by_place(state)).faces())
       by_id.settle_by_faces(state, true);
-      by_place = VertexClaims(state, claims_by_place(state));
-    }
   }
+  const VertexClaims by_place(state, claims_by_place(state));
   by_place.settle_by_faces(state, false);
   by_place.settle_by_edges(state);
 }
@@ -69,13 +68,26 @@ std::vector<FaceMatch> faces_of(MatchState& state) {
   return faces;
 }
 
-}  // namespace
-
-SurfaceMatch match_surfaces(const Surface& from, const Surface& to, std::vector<std::uint32_t> ids) {
+SurfaceMatch match_as_numbered(const Surface& from, const Surface& to, std::vector<std::uint32_t> ids) {
   MatchState state(from, to);
   pair(state, std::move(ids));
   std::vector<FaceMatch> faces = faces_of(state);
   return {std::move(state.pairs), std::move(faces)};
+}
+
+}  // namespace
+
+SurfaceMatch match_surfaces(const Surface& from, const Surface& to, std::vector<std::uint32_t> ids) {
+  if (!is_scattered(to) || is_scattered(from)) return match_as_numbered(from, to, std::move(ids));
+  const LocalOrder order = in_local_order(to);
+  std::vector<std::uint32_t> ordered_ids;
+  for (std::size_t w = 0; w < ids.size(); ++w) ordered_ids.push_back(ids[order.vertex[w]]);
+  const SurfaceMatch found = match_as_numbered(from, order.surface(), std::move(ordered_ids));
+  SurfaceMatch match{VertexPairs(from.points.size(), to.points.size()), std::vector<FaceMatch>(to.face_count())};
+  for (std::uint32_t w = 0; w < to.points.size(); ++w)
+    if (const std::uint32_t v = found.vertices.from(w); v != kNowhere) match.vertices.set(v, order.vertex[w]);
+  for (std::uint32_t g = 0; g < to.face_count(); ++g) match.faces[order.face[g]] = found.faces[g];
+  return match;
 }
 
 Matching match_faces(const Surface& from, const Surface& to) {

@@ -17,6 +17,16 @@ std::vector<std::uint64_t> keys_of_faces(const Surface& s) {
   return keys;
 }
 
+/// Whether corner i of a cycle is corner (i + turn) % size of a face.
+bool is_turned(std::span<const std::uint32_t> face, std::uint32_t turn, std::span<const std::uint32_t> cycle) {
+  std::size_t at = turn;
+  for (const std::uint32_t v : cycle) {
+    if (face[at] != v) return false;
+    if (++at == face.size()) at = 0;
+  }
+  return true;
+}
+
 }  // namespace
 
 Places::Places(const Surface& from_surface, const Rings& from_rings, const Surface& to_surface, const Rings& to_rings) {
@@ -33,32 +43,38 @@ Places::Places(const Surface& from_surface, const Rings& from_rings, const Surfa
   count(to_rings, to, count_to, first_to);
 }
 
-FaceFinder::FaceFinder(const Surface& surface) : surface_(surface), index_(keys_of_faces(surface)) {}
-
-bool FaceFinder::has(std::span<const std::uint32_t> cycle) const {
-  std::uint32_t f = index_.first(hash_of(cycle));
-  while (f != kNowhere && turned(f, cycle).face == FaceMatch::kNone) f = index_.after(f);
-  return f != kNowhere;
+FaceMatch FaceFinder::find(std::span<const std::uint32_t> cycle) {
+  const auto least = static_cast<std::uint32_t>(
+      std::ranges::min_element(cycle, {}, [&](std::uint32_t v) { return rings_.degree(v); }) - cycle.begin());
+  constexpr std::uint32_t kMany = 200;
+  const auto size = static_cast<std::uint32_t>(cycle.size());
+  if (rings_.degree(cycle[least]) > kMany) {
+    if (!index_) index_.emplace(keys_of_faces(surface_));
+    std::uint32_t f = index_->first(hash_of(cycle));
+    while (f != kNowhere && turned(f, cycle).face == FaceMatch::kNone) f = index_->after(f);
+    return f == kNowhere ? FaceMatch{} : turned(f, cycle);
+  }
+  for (const std::uint32_t c : rings_.of(cycle[least])) {
+    const std::uint32_t f = rings_.face(c);
+    if (taken_[f] || surface_.size(f) != size) continue;
+    const std::uint32_t turn = (c - surface_.firsts[f] + size - least) % size;
+    if (is_turned(surface_.vertices(f), turn, cycle)) return {f, turn};
+  }
+  return {};
 }
 
 FaceMatch FaceFinder::take(std::span<const std::uint32_t> cycle) {
-  FaceMatch match;
-  (void)index_.take(hash_of(cycle), ~0U, [&](std::uint32_t f) {
-    match = turned(f, cycle);
-    return match.face != FaceMatch::kNone;
-  });
+  const FaceMatch match = find(cycle);
+  if (match.face == FaceMatch::kNone) return match;
+  taken_[match.face] = true;
+  if (index_) (void)index_->take(hash_of(cycle), ~0U, [&](std::uint32_t f) { return f == match.face; });
   return match;
 }
 
 FaceMatch FaceFinder::turned(std::uint32_t face, std::span<const std::uint32_t> cycle) const {
   const auto vertices = surface_.vertices(face);
-  if (vertices.size() != cycle.size()) return {};
-  for (std::uint32_t turn = 0; turn < cycle.size(); ++turn) {
-    const auto split = vertices.begin() + turn;
-    const auto middle = cycle.begin() + (vertices.end() - split);
-    if (std::equal(split, vertices.end(), cycle.begin()) && std::equal(vertices.begin(), split, middle))
-      return {face, turn};
-  }
+  for (std::uint32_t turn = 0; vertices.size() == cycle.size() && turn < cycle.size(); ++turn)
+    if (is_turned(vertices, turn, cycle)) return {face, turn};
   return {};
 }
 
@@ -68,7 +84,7 @@ MatchState::MatchState(const Surface& from_surface, const Surface& to_surface)
       from_rings(from),
       to_rings(to),
       places(from, from_rings, to, to_rings),
-      faces(from),
+      faces(from, from_rings),
       pairs(from.points.size(), to.points.size()) {}
 
 bool MatchState::known_cycle(std::uint32_t face, std::vector<std::uint32_t>& cycle) const {

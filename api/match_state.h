@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -47,19 +48,24 @@ class VertexPairs {
   std::vector<std::uint32_t> to_, from_;
 };
 
-/// Finds faces by their vertices.
+/// Finds faces by their vertices: around the one with the fewest faces or, among hundreds of them, by hash.
 class FaceFinder {
  public:
-  explicit FaceFinder(const Surface& surface);
-  [[nodiscard]] bool has(std::span<const std::uint32_t> cycle) const;
+  /// Both must outlive this.
+  FaceFinder(const Surface& surface, const Rings& rings)
+      : surface_(surface), rings_(rings), taken_(surface.face_count(), false) {}
+  [[nodiscard]] bool has(std::span<const std::uint32_t> cycle) { return find(cycle).face != FaceMatch::kNone; }
   /// Takes out the first face whose vertices stand in this cyclic order; none when there is none left.
   [[nodiscard]] FaceMatch take(std::span<const std::uint32_t> cycle);
 
  private:
+  [[nodiscard]] FaceMatch find(std::span<const std::uint32_t> cycle);
   [[nodiscard]] FaceMatch turned(std::uint32_t face, std::span<const std::uint32_t> cycle) const;
 
-  Surface surface_;
-  HashIndex index_;
+  const Surface& surface_;
+  const Rings& rings_;
+  std::vector<bool> taken_;
+  std::optional<HashIndex> index_;  ///< made when first needed
 };
 
 /// What is known of two surfaces while they are matched.

@@ -11,14 +11,14 @@ namespace {
 /// Whether faces of `to` are faces of `from` as the vertices are paired; each is looked up once.
 class FaceTruth {
  public:
-  explicit FaceTruth(const MatchState& state) : state_(state), known_(state.to.face_count(), 0) {}
+  explicit FaceTruth(MatchState& state) : state_(state), known_(state.to.face_count(), 0) {}
   bool operator()(std::uint32_t face) {
     if (!known_[face]) known_[face] = state_.known_cycle(face, cycle_) && state_.faces.has(cycle_) ? 1 : 2;
     return known_[face] == 1;
   }
 
  private:
-  const MatchState& state_;
+  MatchState& state_;
   std::vector<std::uint8_t> known_;
   std::vector<std::uint32_t> cycle_;
 };

@@ -28,14 +28,14 @@ HashIndex crowded_vertices(const MatchState& state) {
 
 }  // namespace
 
-VertexClaims::VertexClaims(const MatchState& state, std::vector<std::uint32_t> claims)
+VertexClaims::VertexClaims(MatchState& state, std::vector<std::uint32_t> claims)
     : claims_(std::move(claims)), votes_(claims_.size(), 0) {
   for (std::uint32_t w = 0; w < claims_.size(); ++w)
     if (state.pairs.from(w) != kNowhere) claims_[w] = state.pairs.from(w);
   count_faces(state);
 }
 
-void VertexClaims::count_faces(const MatchState& state) {
+void VertexClaims::count_faces(MatchState& state) {
   std::vector<std::uint32_t> cycle;
   for (std::uint32_t g = 0; g < state.to.face_count(); ++g) {
     const auto vertices = state.to.vertices(g);
@@ -107,9 +107,8 @@ std::vector<OrderedPairs> pairs_by_order(const MatchState& state) {
       return {};
   }
   for (std::uint32_t w = 0; w < state.to.points.size(); ++w) {
-    const std::uint32_t place = places.to[w];
-    if (ordered.pairs.from(w) == kNowhere || places.count_from[place] != 1) continue;
-    ordered.contradictions += places.first_from[place] != ordered.pairs.from(w);
+    const std::uint32_t v = ordered.pairs.from(w), place = places.to[w];
+    ordered.contradictions += v != kNowhere && places.from[v] != place && places.count_from[place] > 0;
   }
   return {std::move(ordered)};
 }

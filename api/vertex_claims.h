@@ -12,7 +12,7 @@ namespace ramcdb::detail {
 class VertexClaims {
  public:
   /// \param claims per vertex of `to`, kNone without. Pairs that are known already count as claims.
-  VertexClaims(const MatchState& state, std::vector<std::uint32_t> claims);
+  VertexClaims(MatchState& state, std::vector<std::uint32_t> claims);
 
   /// How many faces of `to` are faces of `from` if all claims are true.
   [[nodiscard]] std::uint64_t faces() const { return faces_; }
@@ -23,7 +23,7 @@ class VertexClaims {
   void settle_by_edges(MatchState& state) const;
 
  private:
-  void count_faces(const MatchState& state);
+  void count_faces(MatchState& state);
   void settle(MatchState& state, const std::vector<std::uint32_t>& votes, std::uint32_t least) const;
 
   std::vector<std::uint32_t> claims_, votes_;
@@ -37,7 +37,7 @@ class VertexClaims {
 /// Vertices as told by faces in unchanged order.
 struct OrderedPairs {
   VertexPairs pairs;
-  std::uint64_t contradictions = 0;  ///< vertices that alone lie where another vertex alone lay
+  std::uint64_t contradictions = 0;  ///< vertices that lie where other ones lay
 };
 /// Empty where the files' faces do not go with each other one by one, with a vertex for each vertex.
 [[nodiscard]] std::vector<OrderedPairs> pairs_by_order(const MatchState& state);

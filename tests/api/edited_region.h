@@ -204,4 +204,15 @@ struct EditedRegion {
   }
 };
 
+/// The mesh with so much of its connectivity changed at random places that it has no symmetry left.
+[[nodiscard]] inline TestMesh irregular(const TestMesh& mesh) {
+  EditedRegion edited(region_of(mesh, 24));
+  edited.remesh(0.3, 99);
+  TestMesh out;
+  for (const LatticePoint p : edited.points)
+    out.positions.push_back({static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
+  for (std::size_t f = 0; f < edited.face_count(); ++f) out.faces.push_back(edited.triangle(f));
+  return out;
+}
+
 }  // namespace ramcdb::test
