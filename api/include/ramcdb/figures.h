@@ -144,6 +144,8 @@ struct CommitReport {
   std::uint64_t bytes_written = 0;
   double seconds = 0;
   std::vector<ChartId> conflicts;  ///< not empty: refused, nothing was written
+  /// Of a built-in edit: attributes with normals, which it left as they were.
+  std::vector<std::string> normals_left;
 };
 
 /// A mesh coded anew.

@@ -15,6 +15,8 @@
 namespace ramcdb {
 
 class EditTransaction;
+struct SmoothOptions;
+struct TransformOptions;
 
 /// Called now and then with the stage and the share of it that is done (0..1), from the calling thread. It may throw
 /// to cancel: the repository stays as it was.
@@ -121,6 +123,14 @@ class Repository {
 
   /// Starts an edit of one mesh on the tip of a branch.
   [[nodiscard]] EditTransaction begin_edit(std::string_view mesh = {}, std::string_view branch = "main");
+
+  /// Smooths a region of a mesh at the tip of a branch and commits that as one version; see ramcdb/built_in_edits.h.
+  /// With nothing moved, writes nothing and says so. Conflicts with what others published meanwhile come back in the
+  /// report, with nothing written. Throws invalid_argument for options out of range, not_found for an empty region.
+  CommitReport smooth(std::string_view mesh, const Region& region, const SmoothOptions& options);
+  /// Moves a region by an affine map and commits, likewise. Charts outside that share vertices with it follow with
+  /// these. Throws limit_exceeded where vertices would leave the lattice.
+  CommitReport transform(std::string_view mesh, const Region& region, const TransformOptions& options);
 
   [[nodiscard]] DiffReport diff(const Snapshot& from, const Snapshot& to, unsigned threads = 1) const;
 
