@@ -239,7 +239,8 @@ std::string commit_json(const CommitReport& report) {
                   {"values_changed", report.values_changed},
                   {"layers_reencoded", report.layers_reencoded},
                   {"nothing_changed", report.nothing_changed},
-                  {"conflicts", of(report.conflicts)}});
+                  {"conflicts", of(report.conflicts)},
+                  {"normals_left", report.normals_left}});
 }
 
 std::string repack_json(const RepackReport& report) {
