@@ -85,6 +85,7 @@ class ChartChanges {
 ChangeReport describe_edit(const PendingEdit& edit) {
   const ChangeSet& changes = edit.changes;
   ChangeReport report;
+  report.notes = edit.notes;
   double squares = 0;
   for (const VertexMove& move : changes.moves) {
     const double d = distance(move);

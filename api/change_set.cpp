@@ -210,7 +210,7 @@ std::optional<VertexMove> move_to(const Snapshot::Impl& at, const RegionMesh& re
                                   const Point& p) {
   const Lattice& lattice = at.record().lattice;
   VertexMove move{
-      static_cast<std::uint32_t>(vertex), region.keys[vertex], region.points[vertex], {}, {}, at.record().rounded(p)};
+      region.keys[vertex], region.points[vertex], {}, {}, at.record().rounded(p), static_cast<std::uint32_t>(vertex)};
   move.to = lattice.snap(move.target);
   if (!at.record().exact) {
     if (move.to == move.from) return std::nullopt;

@@ -14,10 +14,10 @@ namespace ramcdb::detail {
 
 /// Where a vertex goes. In a lossless mesh it may go less than a lattice step.
 struct VertexMove {
-  std::uint32_t vertex = 0;  ///< of the region
   VertexKey key;
   LatticePoint from, to;
-  Point position, target;  ///< model units; of other meshes those of `from` and `to`
+  Point position, target;    ///< model units; of other meshes those of `from` and `to`
+  std::uint32_t vertex = 0;  ///< of the region, where there is one
 
   friend bool operator==(const VertexMove&, const VertexMove&) = default;
 };

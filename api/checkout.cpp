@@ -84,7 +84,9 @@ EditedFile read_edited_file(const std::shared_ptr<db::Store>& store, const std::
   const Snapshot::Impl& at = *edit.parts.front().at;
   const bool trust_ids = edit.parts.size() == 1 && edited.sidecar.ids_version == at.version();
   try {
-    edit.edited = edited_in_file(at, edit.region, data, edited.sidecar.local_origin, trust_ids);
+    FileEdit found = edited_in_file(at, edit.region, data, edited.sidecar.local_origin, trust_ids);
+    edit.edited = std::move(found.edited);
+    edit.notes = {std::move(found.frame), found.snapped_back, found.attributes_missing, found.values_made_up};
     edit.changes = changes_of(at, edit.region, edit.edited);
   } catch (const Error& e) {
     throw Error(e.code(), fmt::format("{}: {}", file.string(), e.what()));

@@ -85,6 +85,7 @@ std::string figures_of(const CommitReport& report, std::string_view operation, s
 
 void count_changes(const PendingEdit& edit, CommitReport& report) {
   const ChangeReport change = describe_edit(edit);
+  report.notes = edit.notes;
   report.charts_touched = change.charts_touched.size();
   report.vertices_moved = change.vertices_moved;
   report.vertices_added = change.vertices_added;
@@ -106,6 +107,22 @@ void count_coded(const EncodedEdit& edit, CommitReport& report) {
   report.ranges_expanded = edit.ranges_expanded;
 }
 
+/// What a commit that went in before, and whose answer was lost, did.
+void repeat_report(const PendingEdit& edit, VersionId published, CommitReport& report) {
+  const Snapshot::Impl& base = edit.base();
+  report.revision = published;
+  report.parent = base.store().version(published).parents.front();
+  const PageIndex now = index_at(base, published), before = index_at(base, report.parent);
+  for (const db::ChangedCharts& changed : base.store().changed(published))
+    for (const ChartId id : changed.charts) {
+      if (changed.mesh != base.root().mesh) continue;
+      if (!now.leaf_of(id)) report.removed.push_back(id);
+      if (!before.leaf_of(id)) report.added.push_back(id);
+    }
+  report.charts_added = report.added.size();
+  report.charts_removed = report.removed.size();
+}
+
 /// Puts all that a version writes, and says where the mesh then stands.
 db::MeshRoot put_edit(const Snapshot::Impl& tip, EncodedEdit& edit, db::Writer& writer) {
   MeshRecord& record = edit.record;
@@ -120,11 +137,12 @@ db::MeshRoot put_edit(const Snapshot::Impl& tip, EncodedEdit& edit, db::Writer& 
 /// One version of one mesh on the tip of a branch.
 class TipPublisher {
  public:
-  TipPublisher(const std::shared_ptr<db::Store>& store, MeshId mesh, const CommitOptions& options,
-               std::string_view operation, const std::string& attempt,
+  TipPublisher(const Snapshot::Impl& base, const CommitOptions& options, std::string_view operation,
+               const std::string& attempt,
                const std::function<std::optional<EncodedEdit>(const Snapshot::Impl&)>& encode, CommitReport& report)
-      : store_(store),
-        mesh_(mesh),
+      : base_(base),
+        store_(base.store_handle()),
+        mesh_(base.root().mesh),
         options_(options),
         operation_(operation),
         attempt_(attempt),
@@ -135,7 +153,7 @@ class TipPublisher {
     constexpr int kTriesWithoutLock = 2;
     for (int tries = 0;; ++tries) {
       const auto lock = tries < kTriesWithoutLock ? nullptr : store_->writer();
-      const Snapshot::Impl tip = snapshot_of(lock ? lock->tip(options_.branch) : store_->resolve(options_.branch));
+      const Snapshot::Impl tip = snapshot_of(lock ? lock->tip(options_.branch) : store_->tip(options_.branch));
       std::optional<EncodedEdit> edit = encode_(tip);
       if (!edit) return;
       count_coded(*edit, report_);
@@ -147,8 +165,9 @@ class TipPublisher {
   [[nodiscard]] Snapshot::Impl snapshot_of(VersionId version) const {
     const auto roots = store_->roots(version);
     if (const db::MeshRoot* root = root_of(roots, mesh_)) return {store_, version, *root};
-    throw Error(Errc::conflict, fmt::format("branch {} does not hold the mesh", options_.branch),
-                fmt::format("version {}", version.value), "commit to the branch that you checked out from");
+    throw Error(Errc::conflict, fmt::format("mesh {} is not on branch {}", base_.root().name, options_.branch),
+                version ? fmt::format("version {}", version.value) : "there is no such branch",
+                "commit to the branch that you checked out from");
   }
 
   /// False when the tip moved.
@@ -174,6 +193,7 @@ class TipPublisher {
     return true;
   }
 
+  const Snapshot::Impl& base_;
   const std::shared_ptr<db::Store>& store_;
   MeshId mesh_;
   const CommitOptions& options_;
@@ -201,7 +221,7 @@ const Snapshot::Impl& PendingEdit::base() const { return newest(parts); }
 void compare_with_tip(ChangeReport& report, std::span<const RegionPart> parts, std::string_view branch) {
   const Snapshot::Impl& base = newest(parts);
   report.base = base.version();
-  report.tip = base.store().resolve(branch);
+  report.tip = base.store().tip(branch);
   report.changed_by_others = charts_other_than(parts, index_at(base, report.tip), {});
   report.conflicts = common(report.changed_by_others, {report.charts_touched.begin(), report.charts_touched.end()});
 }
@@ -233,11 +253,11 @@ std::string attempt_name(std::string_view nonce, std::string_view branch, const 
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
-void publish_on_tip(const std::shared_ptr<db::Store>& store, MeshId mesh, const CommitOptions& options,
-                    std::string_view operation, const std::string& attempt,
+void publish_on_tip(const Snapshot::Impl& base, const CommitOptions& options, std::string_view operation,
+                    const std::string& attempt,
                     const std::function<std::optional<EncodedEdit>(const Snapshot::Impl& tip)>& encode,
                     CommitReport& report) {
-  TipPublisher(store, mesh, options, operation, attempt, encode, report).run();
+  TipPublisher(base, options, operation, attempt, encode, report).run();
 }
 
 CommitReport commit_edit(const PendingEdit& edit, const CommitOptions& options, const std::string& attempt) {
@@ -249,12 +269,10 @@ CommitReport commit_edit(const PendingEdit& edit, const CommitOptions& options, 
     report.nothing_changed = true;
     report.revision = report.parent = base.version();
   } else if (const auto published = base.store().published_by(attempt)) {
-    report.revision = *published;
-    const auto parents = base.store().version(*published).parents;
-    if (!parents.empty()) report.parent = parents.front();
+    repeat_report(edit, *published, report);
   } else {
     publish_on_tip(
-        base.store_handle(), base.root().mesh, options, "commit", attempt,
+        base, options, "commit", attempt,
         [&](const Snapshot::Impl& tip) -> std::optional<EncodedEdit> {
           report.conflicts = common(charts_other_than(edit.parts, tip.pages(), {}), edit.changes.touched);
           if (!report.conflicts.empty()) return std::nullopt;

@@ -19,6 +19,7 @@ struct PendingEdit {
   RegionMesh region;              ///< with attributes
   EditedRegion edited;
   ChangeSet changes;
+  FileNotes notes;
   /// Whether charts outside the region may be cut anew where an edit leaves too small a one beside them.
   bool may_recut_outside = false;
 
@@ -47,11 +48,12 @@ void compare_with_tip(ChangeReport& report, std::span<const RegionPart> parts, s
 
 /// A version of one mesh that is made from the tip of a branch: coded without the writer's lock, and with it where the
 /// tip moved twice meanwhile, so that it comes to an end.
+/// \param base a version that holds the mesh
 /// \param operation what the version's figures call it
 /// \param encode makes the edit from a tip; none when there is nothing to publish
 /// \param report gets the version; counts of the edit for the version's figures are there before
-void publish_on_tip(const std::shared_ptr<db::Store>& store, MeshId mesh, const CommitOptions& options,
-                    std::string_view operation, const std::string& attempt,
+void publish_on_tip(const Snapshot::Impl& base, const CommitOptions& options, std::string_view operation,
+                    const std::string& attempt,
                     const std::function<std::optional<EncodedEdit>(const Snapshot::Impl& tip)>& encode,
                     CommitReport& report);
 

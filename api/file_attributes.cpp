@@ -8,7 +8,7 @@
 namespace ramcdb::detail {
 namespace {
 
-constexpr std::uint32_t kNone = ~std::uint32_t{0};
+constexpr std::uint32_t kNoPlace = ~std::uint32_t{0};
 
 bool can_give(const AttributeInfo& from, const AttributeInfo& to) {
   const bool place = from.of == to.of || (from.of == AttributeOf::vertex && to.of == AttributeOf::corner);
@@ -79,7 +79,7 @@ std::uint64_t take_values(const mesh_file::MeshData& file, const FilePlaces& pla
     if (of == AttributeOf::vertex) return places.vertices[at];
     if (of == AttributeOf::face) return places.faces[at];
     const std::uint32_t corner = places.corners[at];
-    return given == AttributeOf::vertex && corner != kNone ? file.corners[corner] : corner;
+    return given == AttributeOf::vertex && corner != kNoPlace ? file.corners[corner] : corner;
   };
   for (Attribute& attribute : mesh.attributes) {
     const Attribute* given = find_in(file, attribute.info);
@@ -89,7 +89,7 @@ std::uint64_t take_values(const mesh_file::MeshData& file, const FilePlaces& pla
     const std::size_t components = attribute.info.components, theirs = given->info.components;
     for (std::size_t at = 0; at < attribute.count(); ++at) {
       const std::uint32_t place = place_of(attribute.info.of, given->info.of, at);
-      if (place == kNone) continue;
+      if (place == kNoPlace) continue;
       for (std::size_t k = 0; k < std::min(components, theirs); ++k)
         attribute.values[at * components + k] = convert(given->values[place * theirs + k]);
     }

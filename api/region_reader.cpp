@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <numeric>
 
+#include "api/border_snap.h"
 #include "api/edited_region_builder.h"
 #include "api/file_attributes.h"
+#include "api/file_frame.h"
 #include "api/mesh_file/triangulate.h"
 #include "api/region_faces.h"
 #include "api/region_file.h"
@@ -20,11 +22,13 @@ constexpr std::uint32_t kNone = RegionMatch::kNone;
 /// A file's mesh on the lattice.
 class FileMesh {
  public:
-  FileMesh(const mesh_file::MeshData& data, const MeshRecord& record, const Point& origin)
+  /// \param written its positions, relative to `origin`
+  FileMesh(const mesh_file::MeshData& data, std::span<const Point> written, const MeshRecord& record,
+           const Point& origin)
       : corners(data.corners), firsts_{0} {
-    positions.reserve(data.positions.size());
-    points.reserve(data.positions.size());
-    for (const Point& p : data.positions) {
+    positions.reserve(written.size());
+    points.reserve(written.size());
+    for (const Point& p : written) {
       Point q = p;
       for (int a = 0; a < 3; ++a)
         if (origin[a] != 0) q[a] += origin[a];  // -0 + 0 would be +0
@@ -162,20 +166,42 @@ bool repeats_vertices(const mesh_file::MeshData& data) {
   return true;
 }
 
+/// Where a region's vertices are, as a file has them.
+std::vector<Point> relative_positions(const Snapshot::Impl& at, const RegionMesh& region, const Point& origin) {
+  std::vector<Point> positions;
+  positions.reserve(region.points.size());
+  for (std::size_t v = 0; v < region.points.size(); ++v) {
+    Point p = region.exact.empty() ? at.record().lattice.position(region.points[v]) : region.exact[v];
+    for (int a = 0; a < 3; ++a)
+      if (origin[a] != 0) p[a] -= origin[a];
+    positions.push_back(p);
+  }
+  return positions;
+}
+
 }  // namespace
 
-EditedRegion edited_in_file(const Snapshot::Impl& at, const RegionMesh& region, const mesh_file::MeshData& data,
-                            const Point& local_origin, bool trust_ids) {
-  const FileMesh file(data, at.record(), local_origin);
+FileEdit edited_in_file(const Snapshot::Impl& at, const RegionMesh& region, const mesh_file::MeshData& data,
+                        const Point& local_origin, bool trust_ids) {
+  FileEdit found;
+  std::vector<Point> written = data.positions;
+  if (const auto frame = find_frame(region, at.record().lattice, local_origin, written)) {
+    for (Point& p : written) p = frame->apply(p);
+    found.frame = frame->describe();
+  }
+  FileMesh file(data, written, at.record(), local_origin);
   const std::span<const std::uint64_t> ids = trust_ids ? data.vertex_ids : std::span<const std::uint64_t>();
   const MatchedRegion matched = match_region(region, file.as_other(ids, repeats_vertices(data)));
+  const double loss = coordinate_loss(relative_positions(at, region, local_origin), written);
+  found.snapped_back =
+      snap_back_border(region, at.record().lattice, matched.match, loss, file.positions, file.points).vertices;
   FileEditBuilder builder(at, region, matched, file);
-  EditedRegion edited = builder.run();
+  found.edited = builder.run();
   if (!region.attributes.empty()) {
-    take_values(data, builder.take_places(), edited.mesh);
-    interpolate_new(region, edited);
+    found.attributes_missing = take_values(data, builder.take_places(), found.edited.mesh);
+    found.values_made_up = interpolate_new(region, found.edited);
   }
-  return edited;
+  return found;
 }
 
 }  // namespace ramcdb::detail

@@ -56,7 +56,7 @@ RepackReport repack_mesh(const Snapshot::Impl& at, const RepackOptions& options)
                        options.threads, options.progress, options.ignore_locks};
   if (commit.message.empty()) commit.message = profile == codec::Profile::fast ? "repack as fast" : "repack as dense";
   CommitReport committed;
-  publish_on_tip(at.store_handle(), at.root().mesh, commit, "repack", db::new_attempt_id(), encode, committed);
+  publish_on_tip(at, commit, "repack", db::new_attempt_id(), encode, committed);
   if (!report.nothing_changed) {
     report.bytes_written = committed.bytes_written;
     report.revision = committed.revision;

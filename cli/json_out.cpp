@@ -263,7 +263,8 @@ std::string commit_json(const CommitReport& report) {
                   {"values_changed", report.values_changed},
                   {"layers_reencoded", report.layers_reencoded},
                   {"nothing_changed", report.nothing_changed},
-                  {"conflicts", of(report.conflicts)}});
+                  {"conflicts", of(report.conflicts)},
+                  {"normals_left", report.normals_left}});
 }
 
 std::string repack_json(const RepackReport& report) {
@@ -276,8 +277,7 @@ std::string repack_json(const RepackReport& report) {
                   {"bytes_before", by_kind(report.before, same)},
                   {"bytes", by_kind(report.after, same)},
                   {"bytes_written", report.bytes_written},
-                  {"seconds", report.seconds},
-                  {"conflicts", of(report.conflicts)}});
+                  {"seconds", report.seconds}});
 }
 
 std::string log_json(const std::vector<VersionRecord>& versions) {

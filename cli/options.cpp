@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdlib>
 #include <thread>
 
@@ -17,6 +18,21 @@ std::string environment(const char* name) {
 }
 
 std::string refuse_empty(const std::string& text) { return text.empty() ? "must not be empty" : ""; }
+
+/// 512M -> 536870912; says what is wrong with others.
+std::string to_bytes(std::string& text) {
+  std::uint64_t number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [unit, error] = std::from_chars(text.data(), end, number);
+  static constexpr std::string_view kUnits = "KMGT";
+  const std::size_t known = unit == end ? 0 : kUnits.find(*unit) + 1;  // npos + 1 = 0
+  const int shift = 10 * static_cast<int>(known);
+  if (error != std::errc() || number == 0 || (unit != end && (known == 0 || unit + 1 != end)) ||
+      number > (~std::uint64_t{0} >> shift))
+    return "must be a size such as 512M or 4G";
+  text = std::to_string(number << shift);
+  return "";
+}
 
 }  // namespace
 
@@ -57,6 +73,13 @@ void add_threads(CLI::App& verb, unsigned& threads) {
   verb.add_option("-j,--threads", threads, "Threads; they change the time, never the result (default: all cores)")
       ->type_name("N")
       ->check(CLI::Range(1U, 1024U));
+}
+
+void add_memory(CLI::App& verb, std::uint64_t& bytes) {
+  bytes = std::uint64_t{1} << 30;
+  verb.add_option("--memory", bytes, "Memory to work in; it changes the time, never the result (default: 1G)")
+      ->type_name("SIZE")
+      ->transform(CLI::Validator(to_bytes, ""));
 }
 
 void add_message(CLI::App& verb, std::string& message, bool required) {

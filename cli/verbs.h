@@ -23,6 +23,8 @@ void setup_checkout(CLI::App& app, Run& run);
 void setup_status(CLI::App& app, Run& run);
 void setup_diff(CLI::App& app, Run& run);
 void setup_commit(CLI::App& app, Run& run);
+void setup_smooth(CLI::App& app, Run& run);
+void setup_transform(CLI::App& app, Run& run);
 void setup_log(CLI::App& app, Run& run);
 void setup_show(CLI::App& app, Run& run);
 void setup_export(CLI::App& app, Run& run);

@@ -114,8 +114,17 @@ struct CheckoutReport {
   double seconds = 0;
 };
 
+/// How an edited file was understood.
+struct FileNotes {
+  std::string frame;                      ///< which change of axes or units was undone; empty for none
+  std::uint64_t snapped_back = 0;         ///< vertices of the region's border that only rounding had moved
+  std::uint64_t attributes_missing = 0;   ///< attributes that the file has nothing for: they stay
+  std::uint64_t values_interpolated = 0;  ///< of new vertices, corners and faces, from the surface that was there
+};
+
 /// What an edited region would change, or did.
 struct ChangeReport {
+  FileNotes notes;
   VersionId base, tip;
   std::vector<ChartId> charts_touched;  ///< with a moved vertex, border included, inside the region
   std::uint64_t vertices_moved = 0, vertices_added = 0, vertices_removed = 0;
@@ -140,6 +149,7 @@ struct ChangeReport {
 };
 
 struct CommitReport {
+  FileNotes notes;
   VersionId revision;  ///< the new version; the base when nothing changed
   VersionId parent;
   bool nothing_changed = false;
@@ -154,6 +164,8 @@ struct CommitReport {
   std::uint64_t bytes_written = 0;
   double seconds = 0;
   std::vector<ChartId> conflicts;  ///< not empty: refused, nothing was written
+  /// Of a built-in edit: attributes with normals, which it left as they were.
+  std::vector<std::string> normals_left;
 };
 
 /// A mesh coded anew.
@@ -166,7 +178,6 @@ struct RepackReport {
   MeshBytes before, after;
   std::uint64_t bytes_written = 0;
   double seconds = 0;
-  std::vector<ChartId> conflicts;  ///< not empty: others committed meanwhile, nothing was written
 };
 
 struct VerifyReport {

@@ -16,6 +16,8 @@
 namespace ramcdb {
 
 class EditTransaction;
+struct SmoothOptions;
+struct TransformOptions;
 
 /// Called now and then with the stage and the share of it that is done (0..1), from the calling thread. It may throw
 /// to cancel: the repository stays as it was.
@@ -170,12 +172,20 @@ class Repository {
   /// Starts an edit of one mesh on the tip of a branch.
   [[nodiscard]] EditTransaction begin_edit(std::string_view mesh = {}, std::string_view branch = "main");
 
+  /// Smooths a region of a mesh at the tip of a branch and commits that as one version; see ramcdb/built_in_edits.h.
+  /// With nothing moved, writes nothing and says so. Conflicts with what others published meanwhile come back in the
+  /// report, with nothing written. Throws invalid_argument for options out of range, not_found for an empty region.
+  CommitReport smooth(std::string_view mesh, const Region& region, const SmoothOptions& options);
+  /// Moves a region by an affine map and commits, likewise. Charts outside that share vertices with it follow with
+  /// these. Throws limit_exceeded where vertices would leave the lattice.
+  CommitReport transform(std::string_view mesh, const Region& region, const TransformOptions& options);
+
   [[nodiscard]] DiffReport diff(const Snapshot& from, const Snapshot& to, unsigned threads = 1) const;
 
   /// Codes all charts of a mesh of a branch anew, as a new version that holds the very same mesh: in another profile,
   /// or with tables that suit it better after many edits. In the profile that the mesh has, a version is written only
-  /// if it gets smaller. Conflicts come back in the report. Files checked out before count as of an older state: they
-  /// commit only where no chart of theirs was coded anew, so check out again.
+  /// if it gets smaller. Commits that go in meanwhile are kept. Files checked out before count as of an older state:
+  /// they commit only where no chart of theirs was coded anew, so check out again.
   RepackReport repack(std::string_view mesh, const RepackOptions& options);
 
   struct VerifyOptions {
