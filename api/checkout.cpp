@@ -94,6 +94,13 @@ EditedFile read_edited_file(const std::shared_ptr<db::Store>& store, const std::
   return edited;
 }
 
+/// A merged file does not hold what others did: it stays an edit of what it was checked out from.
+void keep_sidecar(EditedFile& edited, const std::filesystem::path& file) {
+  edited.sidecar.file_hash = hash_file(file);
+  edited.sidecar.nonce = db::new_attempt_id();
+  write_sidecar(file, edited.sidecar);
+}
+
 /// After a commit the file holds the new version's charts, except those that others changed meanwhile: these it still
 /// holds as they were.
 void move_sidecar_on(EditedFile& edited, const std::filesystem::path& file, const CommitReport& report) {
@@ -173,7 +180,10 @@ CommitReport commit_file(const std::shared_ptr<db::Store>& store, const std::fil
       commit_edit(edited.edit, options, attempt_name(edited.sidecar.nonce, options.branch, edited.edit));
   if (report.conflicts.empty() && !report.nothing_changed) {
     release_lock(*store, std::exchange(edited.sidecar.lock, 0));
-    move_sidecar_on(edited, file, report);
+    if (report.merged)
+      keep_sidecar(edited, file);
+    else
+      move_sidecar_on(edited, file, report);
   }
   report.seconds = seconds_since(start);
   return report;

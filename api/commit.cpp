@@ -10,9 +10,11 @@
 #include <map>
 #include <set>
 
+#include "api/chart_difference.h"
 #include "api/locks.h"
 #include "api/page_rewriter.h"
 #include "api/store_format.h"
+#include "api/three_way.h"
 #include "api/version_figures.h"
 #include "ramcdb/error.h"
 
@@ -144,6 +146,7 @@ class TipPublisher {
         store_(base.store_handle()),
         mesh_(base.root().mesh),
         options_(options),
+        branch_(options.onto.empty() ? options.branch : options.onto),
         operation_(operation),
         attempt_(attempt),
         encode_(encode),
@@ -153,11 +156,12 @@ class TipPublisher {
     constexpr int kTriesWithoutLock = 2;
     for (int tries = 0;; ++tries) {
       const auto lock = tries < kTriesWithoutLock ? nullptr : store_->writer();
-      const Snapshot::Impl tip = snapshot_of(lock ? lock->tip(options_.branch) : store_->tip(options_.branch));
-      std::optional<EncodedEdit> edit = encode_(tip);
+      const VersionId tip = lock ? lock->tip(branch_) : store_->tip(branch_);
+      const Snapshot::Impl at = snapshot_of(tip || options_.onto.empty() ? tip : base_.version());
+      std::optional<EncodedEdit> edit = encode_(at);
       if (!edit) return;
       count_coded(*edit, report_);
-      if (publish(tip, *edit, lock ? *lock : *store_->writer())) return;
+      if (publish(tip, at, *edit, lock ? *lock : *store_->writer())) return;
     }
   }
 
@@ -165,23 +169,25 @@ class TipPublisher {
   [[nodiscard]] Snapshot::Impl snapshot_of(VersionId version) const {
     const auto roots = store_->roots(version);
     if (const db::MeshRoot* root = root_of(roots, mesh_)) return {store_, version, *root};
-    throw Error(Errc::conflict, fmt::format("mesh {} is not on branch {}", base_.root().name, options_.branch),
+    throw Error(Errc::conflict, fmt::format("mesh {} is not on branch {}", base_.root().name, branch_),
                 version ? fmt::format("version {}", version.value) : "there is no such branch",
-                "commit to the branch that you checked out from");
+                "commit to the branch that you checked out from, or with --onto to a new one");
   }
 
   /// False when the tip moved.
-  bool publish(const Snapshot::Impl& tip, EncodedEdit& edit, db::Writer& writer) const {
-    if (writer.tip(options_.branch) != tip.version()) return false;
+  /// \param expected the branch's tip; 0 for a branch that begins with this version
+  bool publish(VersionId expected, const Snapshot::Impl& tip, EncodedEdit& edit, db::Writer& writer) const {
+    if (writer.tip(branch_) != expected) return false;
     if (!options_.ignore_locks) refuse_locked(*store_, mesh_, edit.changed, options_.author);
     db::CommitInfo info;
     info.roots = store_->roots(tip.version());
     const db::MeshRoot moved = put_edit(tip, edit, writer);
     for (db::MeshRoot& root : info.roots)
       if (root.mesh == moved.mesh) root = moved;
-    info.branch = options_.branch;
-    info.expected_tip = tip.version();
+    info.branch = branch_;
+    info.expected_tip = expected;
     info.parents = {tip.version()};
+    if (edit.merged_version) info.parents.push_back(edit.merged_version);
     info.author = options_.author;
     info.message = options_.message;
     info.attempt = attempt_;
@@ -197,6 +203,7 @@ class TipPublisher {
   const std::shared_ptr<db::Store>& store_;
   MeshId mesh_;
   const CommitOptions& options_;
+  const std::string& branch_;
   std::string_view operation_;
   const std::string& attempt_;
   const std::function<std::optional<EncodedEdit>(const Snapshot::Impl&)>& encode_;
@@ -212,6 +219,55 @@ EncodedEdit encode_on(const Snapshot::Impl& tip, const PendingEdit& edit, unsign
     return edit.may_recut_outside || std::ranges::binary_search(edit.region.charts, id);
   };
   return encode_edit(tip, std::move(region), std::move(edited), may_recut, threads);
+}
+
+/// Which charts' layers others changed, of those that an edit changes as well.
+bool layers_overlap(const PendingEdit& edit, const Snapshot::Impl& tip, const std::vector<ChartId>& charts) {
+  const auto version_of = [](const PageChart& chart, std::uint16_t layer) {
+    const auto ref = std::ranges::find(chart.layers, layer, &LayerRef::layer);
+    return ref == chart.layers.end() ? VersionId() : ref->version;
+  };
+  for (const ChartId id : charts) {
+    const auto before = edit.base().pages().leaf_of(id), now = tip.pages().leaf_of(id);
+    if (!before || !now) return true;
+    for (const LayerEdit& layer : edit.changes.layers)
+      if (version_of(*find_chart(*before->leaf, id), layer.layer.id) !=
+          version_of(*find_chart(*now->leaf, id), layer.layer.id))
+        return true;
+  }
+  return false;
+}
+
+/// Merges an edit with what became of its charts, and of all others that changed since: faces may have gone from one to
+/// the other. None, with the conflicts in the report, where that cannot be or was not asked for.
+std::optional<EncodedEdit> merge_on(const Snapshot::Impl& tip, const PendingEdit& edit, const CommitOptions& options,
+                                    CommitReport& report) {
+  const ChartDifference since = chart_difference(edit.base().pages(), tip.pages());
+  std::set<ChartId> before(edit.region.charts.begin(), edit.region.charts.end()),
+      now(since.added.begin(), since.added.end());
+  before.insert(since.changed.begin(), since.changed.end());
+  before.insert(since.removed.begin(), since.removed.end());
+  for (const ChartId id : before)
+    if (!std::ranges::binary_search(since.removed, id)) now.insert(id);
+
+  std::vector<RegionPart> parts = edit.parts;
+  for (const ChartId id : before)
+    if (!std::ranges::binary_search(edit.region.charts, id)) parts.push_back({&edit.base(), {id}});
+  const RegionPart tip_part{&tip, {now.begin(), now.end()}};
+  const RegionMesh base = load_region(parts, options.threads, nullptr, true);
+  RegionMesh theirs = load_region(std::span(&tip_part, 1), options.threads, nullptr, true);
+  MergedEdit merged = merge_edits(tip, base, transferred(edit.edited, edit.region, base), theirs);
+
+  const bool geometry = !edit.changes.moves.empty() || edit.changes.connectivity();
+  const bool other_kinds = !(geometry && merged.theirs_moved) && !layers_overlap(edit, tip, report.conflicts);
+  if (!merged.conflicts.empty() || !(options.merge || other_kinds)) {
+    report.conflict_places = std::move(merged.conflicts);
+    return std::nullopt;
+  }
+  report.conflicts.clear();
+  report.merged = true;
+  const auto may_recut = [&](ChartId) { return true; };
+  return encode_edit(tip, std::move(theirs), std::move(merged.edited), may_recut, options.threads);
 }
 
 }  // namespace
@@ -260,7 +316,8 @@ void publish_on_tip(const Snapshot::Impl& base, const CommitOptions& options, st
   TipPublisher(base, options, operation, attempt, encode, report).run();
 }
 
-CommitReport commit_edit(const PendingEdit& edit, const CommitOptions& options, const std::string& attempt) {
+CommitReport commit_edit(const PendingEdit& edit, const CommitOptions& options, const std::string& attempt,
+                         std::string_view operation, VersionId second_parent) {
   const auto start = std::chrono::steady_clock::now();
   const Snapshot::Impl& base = edit.base();
   CommitReport report;
@@ -272,11 +329,13 @@ CommitReport commit_edit(const PendingEdit& edit, const CommitOptions& options, 
     repeat_report(edit, *published, report);
   } else {
     publish_on_tip(
-        base, options, "commit", attempt,
+        base, options, operation, attempt,
         [&](const Snapshot::Impl& tip) -> std::optional<EncodedEdit> {
           report.conflicts = common(charts_other_than(edit.parts, tip.pages(), {}), edit.changes.touched);
-          if (!report.conflicts.empty()) return std::nullopt;
-          return encode_on(tip, edit, options.threads);
+          auto encoded =
+              report.conflicts.empty() ? encode_on(tip, edit, options.threads) : merge_on(tip, edit, options, report);
+          if (encoded) encoded->merged_version = second_parent;
+          return encoded;
         },
         report);
   }

@@ -24,11 +24,10 @@ std::uint32_t EditedRegionBuilder::add_face(const Triangle& vertices, std::uint3
   return static_cast<std::uint32_t>(out_.mesh.faces.size() - 1);
 }
 
-void EditedRegionBuilder::add_polygon(std::span<const std::uint32_t> corners, std::uint32_t first,
-                                      std::uint32_t faces) {
+void EditedRegionBuilder::add_polygon(std::span<const std::uint32_t> corners, std::span<const std::uint32_t> faces) {
   RegionMesh& mesh = out_.mesh;
   mesh.polygon_of_face.resize(mesh.faces.size(), kNew);
-  std::fill_n(mesh.polygon_of_face.begin() + first, faces, static_cast<std::uint32_t>(mesh.polygon_sizes.size()));
+  for (const std::uint32_t f : faces) mesh.polygon_of_face[f] = static_cast<std::uint32_t>(mesh.polygon_sizes.size());
   mesh.polygon_sizes.push_back(static_cast<std::uint32_t>(corners.size()));
   mesh.polygon_corners.insert(mesh.polygon_corners.end(), corners.begin(), corners.end());
 }

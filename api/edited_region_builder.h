@@ -18,8 +18,8 @@ class EditedRegionBuilder {
   std::uint32_t add_vertex(std::uint32_t source, const Point& position);
   /// \param source face of the region, whose vertices these are corner by corner, or kNew
   std::uint32_t add_face(const Triangle& vertices, std::uint32_t source);
-  /// A polygon of `faces` new faces from `first` on, by its corners: 3 * face + 0..2 each.
-  void add_polygon(std::span<const std::uint32_t> corners, std::uint32_t first, std::uint32_t faces);
+  /// A polygon of new faces by its corners: 3 * face + 0..2 each.
+  void add_polygon(std::span<const std::uint32_t> corners, std::span<const std::uint32_t> faces);
 
   /// Polygons of the region of which all faces stay are kept. Of what is new the values are NaN.
   /// \param attributes the values of what stays, in the numbering of the region

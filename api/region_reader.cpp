@@ -130,19 +130,19 @@ class FileEditBuilder {
   void add_new_face(std::uint32_t face, std::span<const Triangle> triangles, const std::vector<std::uint32_t>& corners,
                     std::span<const std::uint32_t> own) {
     std::vector<std::uint32_t> corner_at(own.size(), kNone);
-    std::uint32_t first = kNone;
+    std::vector<std::uint32_t> added_faces;
     for (const Triangle& t : triangles) {
       Triangle vertices{};
       for (std::size_t i = 0; i < 3; ++i) vertices[i] = match_.vertex[file_.corners[corners[t[i]]]];
       const std::uint32_t added = builder_.add_face(vertices, kNew);
-      if (first == kNone) first = added;
+      added_faces.push_back(added);
       places_.faces.push_back(face);
       for (std::uint32_t i = 0; i < 3; ++i) {
         places_.corners.push_back(corners[t[i]]);
         corner_at[corners[t[i]] - own.front()] = 3 * added + i;
       }
     }
-    if (own.size() > 3) builder_.add_polygon(corner_at, first, static_cast<std::uint32_t>(triangles.size()));
+    if (own.size() > 3) builder_.add_polygon(corner_at, added_faces);
   }
 
   const Snapshot::Impl& at_;

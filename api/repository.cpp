@@ -14,6 +14,7 @@
 #include "api/sidecar.h"
 #include "api/snapshot_impl.h"
 #include "api/verify.h"
+#include "api/version_edit.h"
 #include "api/version_figures.h"
 
 namespace ramcdb {
@@ -212,6 +213,16 @@ ChangeReport Repository::status_file(const std::filesystem::path& file) const {
 
 CommitReport Repository::commit_file(const std::filesystem::path& file, const CommitOptions& options) {
   return detail::commit_file(impl_->store_for_writing(), file, options);
+}
+
+MergeReport Repository::merge(std::string_view revision, const CommitOptions& options) {
+  const auto store = impl_->store_for_writing();
+  return detail::merge_version(store, store->resolve(revision), options);
+}
+
+CommitReport Repository::revert(std::string_view revision, std::string_view mesh, const CommitOptions& options) {
+  const auto store = impl_->store_for_writing();
+  return detail::revert_version(store, store->resolve(revision), mesh, options);
 }
 
 RepackReport Repository::repack(std::string_view mesh, const RepackOptions& options) {

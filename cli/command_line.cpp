@@ -34,6 +34,8 @@ void add_verbs(CLI::App& app, Run& run) {
   setup_log(app, run);
   setup_show(app, run);
   setup_export(app, run);
+  setup_merge(app, run);
+  setup_revert(app, run);
   setup_repack(app, run);
   setup_branch(app, run);
   setup_tag(app, run);

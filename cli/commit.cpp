@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "cli/chart_list.h"
+#include "cli/conflict_text.h"
 #include "cli/failure.h"
 #include "cli/json_out.h"
 #include "cli/options.h"
@@ -41,9 +42,14 @@ CommitReport commit(const CommitCommand& command) {
 }
 
 int refuse(const CommitReport& report, const std::string& file) {
-  complain("others changed " + std::string(report.conflicts.size() == 1 ? "chart " : "charts ") +
-           chart_list(report.conflicts) + " since, nothing was written (" + file +
-           "): check the region out again to another file and repeat the edit there");
+  const std::string charts =
+      std::string(report.conflicts.size() == 1 ? "chart " : "charts ") + chart_list(report.conflicts);
+  if (report.conflict_places.empty())
+    complain("others changed " + charts + " since, nothing was written (" + file +
+             "): merge with --merge, or save the work on a branch of its own with --onto BRANCH");
+  else
+    complain("others changed " + charts + " since, in other ways, nothing was written (" + file +
+             "): " + conflict_text(report.conflict_places) + "save the work on a branch of its own with --onto BRANCH");
   return kConflict;
 }
 
@@ -66,6 +72,11 @@ void setup_commit(CLI::App& app, Run& run) {
   add_message(verb, command->options.message, true);
   add_author(verb, command->options.author);
   verb.add_option("--branch", command->options.branch, "The branch to commit to (default: main)")->type_name("NAME");
+  verb.add_flag("--merge", command->options.merge,
+                "Where others changed the same charts, merge vertex by vertex and value by value");
+  verb.add_option("--onto", command->options.onto,
+                  "The branch to commit to instead; a new one begins at the version that the file was checked out from")
+      ->type_name("BRANCH");
   verb.add_flag("--ignore-locks", command->options.ignore_locks, "Also change charts that others have locked");
   add_threads(verb, command->options.threads);
   add_output_mode(verb, command->mode);

@@ -179,6 +179,15 @@ Json of(const VerifyReport::Problem& problem) {
           {"text", problem.text}};
 }
 
+Json of(const std::vector<MergeConflict>& conflicts) {
+  Json places = Json::array();
+  for (const MergeConflict& conflict : conflicts)
+    places.push_back({{"chart", conflict.chart.value},
+                      {"place", {conflict.place.x, conflict.place.y, conflict.place.z}},
+                      {"what", conflict.what}});
+  return places;
+}
+
 }  // namespace
 
 std::string init_json(const std::filesystem::path& folder, const std::string& id) {
@@ -264,7 +273,24 @@ std::string commit_json(const CommitReport& report) {
                   {"layers_reencoded", report.layers_reencoded},
                   {"nothing_changed", report.nothing_changed},
                   {"conflicts", of(report.conflicts)},
+                  {"merged", report.merged},
+                  {"conflict_places", of(report.conflict_places)},
                   {"normals_left", report.normals_left}});
+}
+
+std::string merge_json(const MergeReport& report) {
+  return printed({{"revision", report.revision.value},
+                  {"parent", report.parent.value},
+                  {"theirs", report.theirs.value},
+                  {"base", report.base.value},
+                  {"nothing_changed", report.nothing_changed},
+                  {"charts_taken", report.charts_taken},
+                  {"charts_reencoded", report.commit.charts_reencoded},
+                  {"vertices_moved", report.commit.vertices_moved},
+                  {"bytes_written", report.commit.bytes_written},
+                  {"conflicts", of(report.commit.conflicts)},
+                  {"conflict_places", of(report.commit.conflict_places)},
+                  {"seconds", report.seconds}});
 }
 
 std::string repack_json(const RepackReport& report) {

@@ -24,6 +24,7 @@ namespace ramcdb::cli {
 /// Of `diff REPO REV1 REV2`.
 [[nodiscard]] std::string diff_json(const DiffReport& report);
 [[nodiscard]] std::string commit_json(const CommitReport& report);
+[[nodiscard]] std::string merge_json(const MergeReport& report);
 [[nodiscard]] std::string repack_json(const RepackReport& report);
 [[nodiscard]] std::string log_json(const std::vector<VersionRecord>& versions);
 [[nodiscard]] std::string show_json(const VersionRecord& version);

@@ -28,6 +28,8 @@ void setup_transform(CLI::App& app, Run& run);
 void setup_log(CLI::App& app, Run& run);
 void setup_show(CLI::App& app, Run& run);
 void setup_export(CLI::App& app, Run& run);
+void setup_merge(CLI::App& app, Run& run);
+void setup_revert(CLI::App& app, Run& run);
 void setup_repack(CLI::App& app, Run& run);
 void setup_branch(CLI::App& app, Run& run);
 void setup_tag(CLI::App& app, Run& run);

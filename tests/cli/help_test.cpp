@@ -11,9 +11,9 @@ using testing::HasSubstr;
 using testing::MatchesRegex;
 using testing::Not;
 
-const std::vector<std::string> kVerbs = {"init", "import", "ls",     "info",  "charts", "checkout",  "status",
-                                         "diff", "commit", "log",    "show",  "export", "repack",    "branch",
-                                         "tag",  "lock",   "unlock", "locks", "smooth", "transform", "verify"};
+const std::vector<std::string> kVerbs = {"init",   "import", "ls",    "info",   "charts", "checkout",  "status", "diff",
+                                         "commit", "log",    "show",  "export", "repack", "branch",    "tag",    "lock",
+                                         "unlock", "locks",  "merge", "revert", "smooth", "transform", "verify"};
 
 /// The lines behind "Example:".
 std::vector<std::string> examples_in(const std::string& help) {
@@ -31,7 +31,7 @@ TEST(Help, ListsEveryVerbAndNoOther) {
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.err, "");
   for (const std::string& verb : kVerbs) EXPECT_THAT(outcome.out, HasSubstr("  " + verb + " "));
-  for (const char* later : {"prune", "merge", "backup"})
+  for (const char* later : {"prune", "backup"})
     EXPECT_THAT(outcome.out, Not(HasSubstr(std::string("  ") + later + " ")));
 }
 

@@ -148,9 +148,18 @@ struct ChangeReport {
   }
 };
 
+/// A place that two edits changed in different ways.
+struct MergeConflict {
+  ChartId chart;  ///< of the edit's own region
+  Point place;    ///< where it was before either edit; model units
+  std::string what;
+};
+
 struct CommitReport {
   FileNotes notes;
-  VersionId revision;  ///< the new version; the base when nothing changed
+  bool merged = false;                         ///< it was merged with what others had done to the same charts
+  std::vector<MergeConflict> conflict_places;  ///< of a merge that failed, at most 1,000
+  VersionId revision;                          ///< the new version; the base when nothing changed
   VersionId parent;
   bool nothing_changed = false;
   std::uint64_t charts_touched = 0;  ///< with a moved vertex inside the region
@@ -166,6 +175,16 @@ struct CommitReport {
   std::vector<ChartId> conflicts;  ///< not empty: refused, nothing was written
   /// Of a built-in edit: attributes with normals, which it left as they were.
   std::vector<std::string> normals_left;
+};
+
+/// Two lines of history made one.
+struct MergeReport {
+  VersionId revision;  ///< the new version; the branch's tip when nothing changed
+  VersionId parent, theirs, base;
+  bool nothing_changed = false;    ///< the branch holds it already
+  std::uint64_t charts_taken = 0;  ///< by their index pages, no blob copied
+  CommitReport commit;             ///< where both sides changed a mesh: what was merged, or the conflicts
+  double seconds = 0;
 };
 
 /// A mesh coded anew.

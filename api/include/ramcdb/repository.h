@@ -73,6 +73,12 @@ struct CommitOptions {
   unsigned threads = 1;
   Progress progress;
   bool ignore_locks = false;  ///< change charts that others than `author` have locked
+  /// Where others changed the same charts meanwhile, merge three ways, vertex by vertex and value by value. Without it
+  /// such edits are conflicts, unless one is of geometry and the other of attributes, or of other attributes.
+  bool merge = false;
+  /// A branch for this commit instead of `branch`: one that is not there yet begins at the version that the edit was
+  /// made on, so that work that meets conflicts is never lost.
+  std::string onto = {};
 };
 
 struct RepackOptions {
@@ -187,6 +193,15 @@ class Repository {
   /// if it gets smaller. Commits that go in meanwhile are kept. Files checked out before count as of an older state:
   /// they commit only where no chart of theirs was coded anew, so check out again.
   RepackReport repack(std::string_view mesh, const RepackOptions& options);
+
+  /// Merges a branch or another revision into `options.branch`. What one side alone changed is taken as it is; where
+  /// both changed a mesh, charts are merged three ways as with CommitOptions::merge. Conflicts come back in the report,
+  /// with nothing written. Throws not_found, and conflict where both sides changed several meshes.
+  MergeReport merge(std::string_view revision, const CommitOptions& options);
+
+  /// Takes back what a version did to a mesh (may be empty where it changed one), on top of what came later, as a new
+  /// version. Conflicts with later edits of the same vertices come back in the report, with nothing written.
+  CommitReport revert(std::string_view revision, std::string_view mesh, const CommitOptions& options);
 
   struct VerifyOptions {
     bool quick = false;  ///< checksums and references only, no decoding

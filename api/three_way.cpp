@@ -1,0 +1,274 @@
+#include "api/three_way.h"
+
+#include <algorithm>
+#include <bit>
+#include <set>
+
+#include "api/edited_region_builder.h"
+#include "api/region_match.h"
+
+namespace ramcdb::detail {
+namespace {
+
+bool same_number(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+
+bool same_place(const Point& a, const Point& b) {
+  return same_number(a.x, b.x) && same_number(a.y, b.y) && same_number(a.z, b.z);
+}
+
+std::vector<Point> positions_in(const Snapshot::Impl& at, const RegionMesh& mesh) {
+  if (!mesh.exact.empty()) return mesh.exact;
+  std::vector<Point> positions;
+  positions.reserve(mesh.points.size());
+  for (const LatticePoint p : mesh.points) positions.push_back(at.record().lattice.position(p));
+  return positions;
+}
+
+class ThreeWayMerge {
+ public:
+  ThreeWayMerge(const Snapshot::Impl& tip, const RegionMesh& base, const EditedRegion& ours, const RegionMesh& theirs)
+      : base_(base),
+        ours_(ours),
+        theirs_(theirs),
+        base_places_(positions_in(tip, base)),
+        our_places_(positions_in(tip, ours.mesh)),
+        their_places_(positions_in(tip, theirs)),
+        values_(theirs.attributes),
+        builder_(tip, theirs) {}
+
+  MergedEdit run() {
+    match_theirs();
+    index_ours();
+    mark_new_edges();
+    add_vertices();
+    add_faces();
+    add_new_faces();
+    if (!merged_.conflicts.empty()) return std::move(merged_);
+    merged_.edited = builder_.finish(values_);
+    copy_new_values();
+    return std::move(merged_);
+  }
+
+ private:
+  void match_theirs() {
+    const RegionFaces faces(base_, true);
+    std::vector<std::uint32_t> corners, firsts{0};
+    for (const Triangle& t : theirs_.faces) {
+      corners.insert(corners.end(), t.begin(), t.end());
+      firsts.push_back(static_cast<std::uint32_t>(corners.size()));
+    }
+    const RegionMatch match = match_region(base_, faces, {their_places_, theirs_.points, corners, firsts, {}, false});
+    base_vertex_.assign(theirs_.points.size(), kNew);
+    their_vertex_.assign(base_.points.size(), kNew);
+    for (std::uint32_t v = 0; v < base_vertex_.size(); ++v)
+      if (const std::uint32_t b = match.vertices[match.vertex[v]].region; b != kNew) {
+        base_vertex_[v] = b;
+        their_vertex_[b] = v;
+        merged_.theirs_moved = merged_.theirs_moved || !same_place(their_places_[v], base_places_[b]);
+      }
+    base_face_ = match.faces;
+    their_face_.assign(base_.faces.size(), kNew);
+    for (std::uint32_t f = 0; f < base_face_.size(); ++f)
+      if (base_face_[f].face != kNew) their_face_[base_face_[f].face] = f;
+    merged_.theirs_moved = merged_.theirs_moved || !match.same_connectivity();
+  }
+
+  void index_ours() {
+    our_vertex_.assign(base_.points.size(), kNew);
+    for (std::uint32_t v = 0; v < ours_.vertex_source.size(); ++v)
+      if (ours_.vertex_source[v] != kNew) our_vertex_[ours_.vertex_source[v]] = v;
+    our_face_.assign(base_.faces.size(), kNew);
+    for (std::uint32_t f = 0; f < ours_.face_source.size(); ++f)
+      if (ours_.face_source[f] != kNew) our_face_[ours_.face_source[f]] = f;
+    for (std::uint32_t f = 0; f < our_face_.size(); ++f)
+      if (our_face_[f] == kNew && their_face_[f] == kNew)
+        conflict_at(base_.faces[f][0], "both sides changed the faces here");
+  }
+
+  /// Edges of the base at which faces of theirs are new.
+  void mark_new_edges() {
+    for (std::uint32_t f = 0; f < base_face_.size(); ++f) {
+      if (base_face_[f].face != kNew) continue;
+      for (std::size_t i = 0; i < 3; ++i)
+        add_edge(base_vertex_[theirs_.faces[f][i]], base_vertex_[theirs_.faces[f][(i + 1) % 3]]);
+    }
+  }
+
+  void add_edge(std::uint32_t a, std::uint32_t b) {
+    if (a != kNew && b != kNew) their_new_edges_.insert({std::min(a, b), std::max(a, b)});
+  }
+
+  void conflict_at(std::uint32_t base_vertex, const char* what) {
+    constexpr std::size_t kMost = 1000;
+    if (merged_.conflicts.size() < kMost && told_.insert(base_vertex).second)
+      merged_.conflicts.push_back({chart_of(base_vertex), base_places_[base_vertex], what});
+  }
+
+  [[nodiscard]] ChartId chart_of(std::uint32_t base_vertex) const {
+    for (std::uint32_t f = 0; f < base_.faces.size(); ++f)
+      if (std::ranges::count(base_.faces[f], base_vertex)) return base_.charts[base_.chart_of_face[f]];
+    return ChartId(base_.keys[base_vertex].id);
+  }
+
+  /// Whether ours takes a face of theirs away.
+  [[nodiscard]] bool is_taken_away(std::uint32_t face) const {
+    return base_face_[face].face != kNew && our_face_[base_face_[face].face] == kNew;
+  }
+
+  void add_vertices() {
+    std::vector<bool> used(theirs_.points.size(), false);
+    for (std::uint32_t f = 0; f < theirs_.faces.size(); ++f)
+      for (const std::uint32_t v : theirs_.faces[f]) used[v] = used[v] || !is_taken_away(f);
+    vertex_.assign(theirs_.points.size(), kNew);
+    for (std::uint32_t v = 0; v < theirs_.points.size(); ++v) {
+      const std::uint32_t b = base_vertex_[v];
+      if (b != kNew && our_vertex_[b] == kNew) {
+        if (used[v]) conflict_at(b, "a vertex that one side uses was removed by the other");
+        if (!used[v]) continue;
+      }
+      vertex_[v] = builder_.add_vertex(v, place_of(v));
+      merge_vertex_values(v);
+    }
+    for (std::uint32_t b = 0; b < base_.points.size(); ++b)
+      if (our_vertex_[b] != kNew && their_vertex_[b] == kNew && moved_by_us(b))
+        conflict_at(b, "a vertex that one side moved was removed by the other");
+    our_new_vertex_.assign(ours_.vertex_source.size(), kNew);
+    for (std::uint32_t v = 0; v < ours_.vertex_source.size(); ++v)
+      if (ours_.vertex_source[v] == kNew) {
+        our_new_vertex_[v] = builder_.add_vertex(kNew, our_places_[v]);
+        new_vertices_.push_back({our_new_vertex_[v], v});
+      }
+  }
+
+  [[nodiscard]] bool moved_by_us(std::uint32_t base_vertex) const {
+    return !same_place(our_places_[our_vertex_[base_vertex]], base_places_[base_vertex]);
+  }
+
+  [[nodiscard]] const Point& place_of(std::uint32_t v) {
+    const std::uint32_t b = base_vertex_[v];
+    if (b == kNew || our_vertex_[b] == kNew || !moved_by_us(b)) return their_places_[v];
+    const Point& ours = our_places_[our_vertex_[b]];
+    if (!same_place(their_places_[v], base_places_[b]) && !same_place(their_places_[v], ours))
+      conflict_at(b, "both sides moved a vertex to different places");
+    return ours;
+  }
+
+  /// Of a value that both know, what either side made of it.
+  void merge_value(std::size_t a, std::size_t theirs, std::size_t base, std::size_t ours, std::uint32_t base_vertex) {
+    const std::size_t components = values_[a].info.components;
+    for (std::size_t k = 0; k < components; ++k) {
+      const double before = base_.attributes[a].values[base * components + k];
+      const double mine = ours_.mesh.attributes[a].values[ours * components + k];
+      double& value = values_[a].values[theirs * components + k];
+      if (same_number(mine, before)) continue;
+      if (!same_number(value, before) && !same_number(value, mine))
+        conflict_at(base_vertex, "both sides changed a value");
+      value = mine;
+    }
+  }
+
+  void merge_vertex_values(std::uint32_t v) {
+    const std::uint32_t b = base_vertex_[v];
+    if (b == kNew || our_vertex_[b] == kNew) return;
+    for (std::size_t a = 0; a < values_.size(); ++a)
+      if (values_[a].info.of == AttributeOf::vertex) merge_value(a, v, b, our_vertex_[b], b);
+  }
+
+  void merge_face_values(std::uint32_t f) {
+    const FaceMatch base = base_face_[f];
+    const std::uint32_t vertex = base_.faces[base.face][0], ours = our_face_[base.face];
+    for (std::size_t a = 0; a < values_.size(); ++a) {
+      if (values_[a].info.of == AttributeOf::face) merge_value(a, f, base.face, ours, vertex);
+      for (std::uint32_t i = 0; values_[a].info.of == AttributeOf::corner && i < 3; ++i) {
+        const std::uint32_t turned = (i + base.turn) % 3;
+        merge_value(a, 3 * f + i, 3 * base.face + turned, 3 * ours + turned, vertex);
+      }
+    }
+  }
+
+  void add_faces() {
+    for (std::uint32_t f = 0; f < theirs_.faces.size(); ++f) {
+      if (is_taken_away(f)) continue;
+      const Triangle& t = theirs_.faces[f];
+      builder_.add_face({vertex_[t[0]], vertex_[t[1]], vertex_[t[2]]}, f);
+      if (base_face_[f].face != kNew) merge_face_values(f);
+    }
+  }
+
+  /// The merged vertex that a vertex of ours is.
+  [[nodiscard]] std::uint32_t merged_vertex(std::uint32_t our_vertex) {
+    const std::uint32_t b = ours_.vertex_source[our_vertex];
+    if (b == kNew) return our_new_vertex_[our_vertex];
+    if (their_vertex_[b] == kNew) {
+      conflict_at(b, "a vertex that one side uses was removed by the other");
+      return 0;
+    }
+    return vertex_[their_vertex_[b]];
+  }
+
+  void add_new_faces() {
+    std::vector<std::uint32_t> added(ours_.face_source.size(), kNew);
+    for (std::uint32_t f = 0; f < ours_.face_source.size(); ++f) {
+      if (ours_.face_source[f] != kNew) continue;
+      const Triangle& t = ours_.mesh.faces[f];
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t a = ours_.vertex_source[t[i]], b = ours_.vertex_source[t[(i + 1) % 3]];
+        if (a != kNew && b != kNew && their_new_edges_.contains({std::min(a, b), std::max(a, b)}))
+          conflict_at(a, "both sides changed the faces here");
+      }
+      added[f] = builder_.add_face({merged_vertex(t[0]), merged_vertex(t[1]), merged_vertex(t[2])}, kNew);
+      new_faces_.push_back({added[f], f});
+    }
+    add_new_polygons(added);
+  }
+
+  void add_new_polygons(const std::vector<std::uint32_t>& added) {
+    const RegionMesh& mesh = ours_.mesh;
+    std::vector<std::vector<std::uint32_t>> faces_of(mesh.polygon_sizes.size());
+    for (std::uint32_t f = 0; f < mesh.polygon_of_face.size(); ++f)
+      if (added[f] != kNew) faces_of[mesh.polygon_of_face[f]].push_back(added[f]);
+    std::vector<std::uint32_t> corners;
+    for (std::size_t p = 0, first = 0; p < faces_of.size(); first += mesh.polygon_sizes[p++]) {
+      if (mesh.polygon_sizes[p] == 3 || faces_of[p].size() + 2 != mesh.polygon_sizes[p]) continue;
+      corners.clear();
+      for (std::size_t i = first; i < first + mesh.polygon_sizes[p]; ++i)
+        corners.push_back(3 * added[mesh.polygon_corners[i] / 3] + mesh.polygon_corners[i] % 3);
+      builder_.add_polygon(corners, faces_of[p]);
+    }
+  }
+
+  void copy_new_values() {
+    for (std::size_t a = 0; a < values_.size(); ++a) {
+      const AttributeInfo& info = values_[a].info;
+      const std::size_t per = info.components * (info.of == AttributeOf::corner ? 3 : std::size_t{1});
+      for (const auto& [to, from] : info.of == AttributeOf::vertex ? new_vertices_ : new_faces_)
+        std::copy_n(ours_.mesh.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(per * from), per,
+                    merged_.edited.mesh.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(per * to));
+    }
+  }
+
+  const RegionMesh& base_;
+  const EditedRegion& ours_;
+  const RegionMesh& theirs_;
+  std::vector<Point> base_places_, our_places_, their_places_;
+  std::vector<Attribute> values_;  ///< in the numbering of theirs
+  EditedRegionBuilder builder_;
+  MergedEdit merged_;
+  std::set<std::uint32_t> told_;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> their_new_edges_;
+  std::vector<std::uint32_t> base_vertex_;                                         ///< theirs -> base
+  std::vector<FaceMatch> base_face_;                                               ///< theirs -> base
+  std::vector<std::uint32_t> their_vertex_, their_face_, our_vertex_, our_face_;   ///< base -> theirs, ours
+  std::vector<std::uint32_t> vertex_;                                              ///< theirs -> merged
+  std::vector<std::uint32_t> our_new_vertex_;                                      ///< ours -> merged
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> new_vertices_, new_faces_;  ///< merged, ours
+};
+
+}  // namespace
+
+MergedEdit merge_edits(const Snapshot::Impl& tip, const RegionMesh& base, const EditedRegion& ours,
+                       const RegionMesh& theirs) {
+  return ThreeWayMerge(tip, base, ours, theirs).run();
+}
+
+}  // namespace ramcdb::detail

@@ -1,0 +1,260 @@
+#include "api/version_edit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "api/chart_difference.h"
+#include "api/edited_region_builder.h"
+#include "api/region_match.h"
+#include "api/version_figures.h"
+#include "ramcdb/error.h"
+
+namespace ramcdb::detail {
+namespace {
+
+/// A mesh as an edit of another one.
+class MeshAsEdit {
+ public:
+  MeshAsEdit(const Snapshot::Impl& at, const RegionMesh& region, const RegionMesh& mesh)
+      : at_(at), region_(region), mesh_(mesh), values_(region.attributes), builder_(at, region) {}
+
+  EditedRegion run() {
+    match();
+    for (std::uint32_t v = 0; v < places_.size(); ++v) {
+      const std::uint32_t source = match_.vertices[match_.vertex[v]].region;
+      (void)builder_.add_vertex(source, places_[v]);
+      take_value(AttributeOf::vertex, v, source);
+    }
+    for (std::uint32_t f = 0; f < mesh_.faces.size(); ++f) add_face(f);
+    add_polygons();
+    EditedRegion edited = builder_.finish(values_);
+    copy_new_values(edited);
+    return edited;
+  }
+
+ private:
+  void match() {
+    places_ = mesh_.exact;
+    for (std::size_t v = places_.size(); v < mesh_.points.size(); ++v)
+      places_.push_back(at_.record().lattice.position(mesh_.points[v]));
+    std::vector<std::uint32_t> corners, firsts{0};
+    for (const Triangle& t : mesh_.faces) {
+      corners.insert(corners.end(), t.begin(), t.end());
+      firsts.push_back(static_cast<std::uint32_t>(corners.size()));
+    }
+    match_ = match_region(region_, RegionFaces(region_, true), {places_, mesh_.points, corners, firsts, {}, false});
+  }
+
+  void add_face(std::uint32_t f) {
+    const FaceMatch found = match_.faces[f];
+    Triangle vertices = mesh_.faces[f];
+    if (found.face != kNew)
+      for (std::uint32_t i = 0; i < 3; ++i) vertices[(i + found.turn) % 3] = mesh_.faces[f][i];
+    (void)builder_.add_face(vertices, found.face);
+    if (found.face == kNew) return;
+    take_value(AttributeOf::face, f, found.face);
+    for (std::uint32_t i = 0; i < 3; ++i)
+      take_value(AttributeOf::corner, 3 * f + i, 3 * found.face + (i + found.turn) % 3);
+  }
+
+  /// Of what stays, the mesh's value.
+  void take_value(AttributeOf of, std::size_t from, std::uint32_t to) {
+    if (to == kNew) return;
+    for (std::size_t a = 0; a < values_.size(); ++a) {
+      if (values_[a].info.of != of) continue;
+      const std::size_t components = values_[a].info.components;
+      std::copy_n(mesh_.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(components * from), components,
+                  values_[a].values.begin() + static_cast<std::ptrdiff_t>(components * to));
+    }
+  }
+
+  void copy_new_values(EditedRegion& edited) const {
+    for (std::size_t a = 0; a < values_.size(); ++a) {
+      const AttributeInfo& info = values_[a].info;
+      const std::size_t per = info.components * (info.of == AttributeOf::corner ? 3 : std::size_t{1});
+      const auto& sources = info.of == AttributeOf::vertex ? edited.vertex_source : edited.face_source;
+      for (std::size_t i = 0; i < sources.size(); ++i)
+        if (sources[i] == kNew)
+          std::copy_n(mesh_.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(per * i), per,
+                      edited.mesh.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(per * i));
+    }
+  }
+
+  /// Those of which all faces are new.
+  void add_polygons() {
+    std::vector<std::vector<std::uint32_t>> faces_of(mesh_.polygon_sizes.size());
+    for (std::uint32_t f = 0; f < mesh_.polygon_of_face.size(); ++f)
+      if (match_.faces[f].face == kNew) faces_of[mesh_.polygon_of_face[f]].push_back(f);
+    for (std::size_t p = 0, first = 0; p < faces_of.size(); first += mesh_.polygon_sizes[p++])
+      if (mesh_.polygon_sizes[p] > 3 && faces_of[p].size() + 2 == mesh_.polygon_sizes[p])
+        builder_.add_polygon(std::span(mesh_.polygon_corners).subspan(first, mesh_.polygon_sizes[p]), faces_of[p]);
+  }
+
+  const Snapshot::Impl& at_;
+  const RegionMesh& region_;
+  const RegionMesh& mesh_;
+  std::vector<Attribute> values_;
+  std::vector<Point> places_;
+  RegionMatch match_;
+  EditedRegionBuilder builder_;
+};
+
+const db::MeshRoot* root_with_id(const std::vector<db::MeshRoot>& roots, MeshId mesh) {
+  const auto it = std::ranges::find(roots, mesh, &db::MeshRoot::mesh);
+  return it == roots.end() ? nullptr : &*it;
+}
+
+/// The meshes of a merge that only one side changed, and those that both did.
+struct MergedRoots {
+  std::vector<db::MeshRoot> roots;       ///< of the branch, with what the other side alone changed
+  std::vector<db::MeshRoot> both;        ///< as the branch has them
+  std::vector<db::ChangedCharts> taken;  ///< charts of the meshes that were taken over
+};
+
+MergedRoots merge_roots(const std::shared_ptr<db::Store>& store, VersionId base, VersionId ours, VersionId theirs) {
+  const auto base_roots = store->roots(base), their_roots = store->roots(theirs);
+  MergedRoots merged{store->roots(ours), {}, {}};
+  for (const db::MeshRoot& their_root : their_roots) {
+    const db::MeshRoot* before = root_with_id(base_roots, their_root.mesh);
+    if (before && *before == their_root) continue;
+    const auto mine = std::ranges::find(merged.roots, their_root.mesh, &db::MeshRoot::mesh);
+    if (mine == merged.roots.end()) {
+      if (before)
+        throw Error(Errc::conflict,
+                    fmt::format("mesh {} was changed on one side and is gone on the other", their_root.name));
+      const auto same_name = std::ranges::find(merged.roots, their_root.name, &db::MeshRoot::name);
+      if (same_name != merged.roots.end())
+        throw Error(Errc::conflict, fmt::format("both sides added a mesh '{}'", their_root.name));
+      merged.roots.push_back(their_root);
+      merged.taken.push_back({their_root.mesh, PageIndex(store, their_root).all_charts()});
+    } else if (before && *mine == *before) {
+      const ChartDifference difference = chart_difference(PageIndex(store, *before), PageIndex(store, their_root));
+      db::ChangedCharts taken{their_root.mesh, difference.changed};
+      taken.charts.insert(taken.charts.end(), difference.added.begin(), difference.added.end());
+      taken.charts.insert(taken.charts.end(), difference.removed.begin(), difference.removed.end());
+      std::ranges::sort(taken.charts);
+      merged.taken.push_back(std::move(taken));
+      *mine = their_root;
+    } else if (!(*mine == their_root)) {
+      merged.both.push_back(*mine);
+    }
+  }
+  std::ranges::sort(merged.roots, {}, &db::MeshRoot::name);
+  return merged;
+}
+
+/// Publishes a version that takes meshes over by their roots.
+VersionId publish_roots(db::Writer& writer, const MergedRoots& merged, VersionId tip, VersionId theirs,
+                        const CommitOptions& options, const std::string& message) {
+  db::CommitInfo info;
+  info.branch = options.branch;
+  info.expected_tip = tip;
+  info.parents = {tip, theirs};
+  info.author = options.author;
+  info.message = message;
+  info.attempt = db::new_attempt_id();
+  info.roots = merged.roots;
+  info.changed = merged.taken;
+  VersionFigures figures;
+  figures.operation = "merge";
+  for (const db::ChangedCharts& taken : merged.taken) figures.charts_touched += taken.charts.size();
+  info.figures = encode_figures(figures);
+  return writer.publish(info);
+}
+
+}  // namespace
+
+PendingEdit edit_between(const Snapshot::Impl& from, const Snapshot::Impl& to, unsigned threads) {
+  if (from.root().mesh != to.root().mesh || !(from.record().lattice == to.record().lattice))
+    throw Error(Errc::invalid_argument, "these versions do not hold the same mesh",
+                fmt::format("{} and {}", from.root().name, to.root().name), "name one mesh with --mesh");
+  const ChartDifference difference = chart_difference(from.pages(), to.pages());
+  std::vector<ChartId> before = difference.changed, after = difference.changed;
+  before.insert(before.end(), difference.removed.begin(), difference.removed.end());
+  after.insert(after.end(), difference.added.begin(), difference.added.end());
+  std::ranges::sort(before);
+  std::ranges::sort(after);
+  if (before.empty() && !after.empty()) before.push_back(from.pages().all_charts().front());
+  if (!after.empty() && before.size() == 1 && difference.changed.empty() && difference.removed.empty())
+    after.insert(std::ranges::upper_bound(after, before.front()), before.front());
+  PendingEdit edit;
+  edit.may_recut_outside = true;
+  edit.parts = {{&from, before}};
+  const RegionPart part{&to, after};
+  edit.region = load_region(edit.parts, threads, nullptr, true);
+  const RegionMesh mesh = load_region(std::span(&part, 1), threads, nullptr, true);
+  edit.edited = MeshAsEdit(from, edit.region, mesh).run();
+  edit.changes = changes_of(from, edit.region, edit.edited);
+  return edit;
+}
+
+CommitReport carry_over(const Snapshot::Impl& base, const Snapshot::Impl& theirs, const CommitOptions& options,
+                        std::string_view operation, VersionId second_parent) {
+  CommitOptions merging = options;
+  merging.merge = true;
+  return commit_edit(edit_between(base, theirs, options.threads), merging, db::new_attempt_id(), operation,
+                     second_parent);
+}
+
+MergeReport merge_version(const std::shared_ptr<db::Store>& store, VersionId theirs, const CommitOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  MergeReport report;
+  report.theirs = theirs;
+  CommitOptions committing = options;
+  if (committing.message.empty()) committing.message = fmt::format("merge v{}", theirs.value);
+  auto writer = store->writer();
+  const VersionId tip = writer->tip(options.branch);
+  if (!tip) throw Error(Errc::not_found, fmt::format("there is no branch '{}'", options.branch));
+  report.base = store->merge_base(tip, theirs);
+  report.revision = report.parent = tip;
+  if (report.base == theirs) {
+    report.nothing_changed = true;
+  } else {
+    const MergedRoots merged = merge_roots(store, report.base, tip, theirs);
+    if (merged.both.size() > 1)
+      throw Error(Errc::conflict, "both sides changed several meshes", {},
+                  "merge versions that change one mesh each, one after the other");
+    if (merged.both.empty()) {
+      report.revision = publish_roots(*writer, merged, tip, theirs, committing, committing.message);
+      for (const db::ChangedCharts& taken : merged.taken) report.charts_taken += taken.charts.size();
+    } else {
+      if (!merged.taken.empty())
+        throw Error(Errc::conflict, "both sides changed one mesh, and one side others beside it", {},
+                    "merge versions that change one mesh each, one after the other");
+      writer.reset();
+      const auto root_at = [&](VersionId version) { return *root_with_id(store->roots(version), merged.both[0].mesh); };
+      const Snapshot::Impl base(store, report.base, root_at(report.base)), other(store, theirs, root_at(theirs));
+      report.commit = carry_over(base, other, committing, "merge", theirs);
+      if (report.commit.conflicts.empty()) report.revision = report.commit.revision;
+    }
+  }
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return report;
+}
+
+CommitReport revert_version(const std::shared_ptr<db::Store>& store, VersionId version, std::string_view mesh,
+                            const CommitOptions& options) {
+  const db::VersionInfo info = store->version(version);
+  if (info.parents.empty())
+    throw Error(Errc::invalid_argument, fmt::format("version {} has no version before it", version.value), {},
+                "choose a later one");
+  const auto now = store->roots(version), before = store->roots(info.parents.front());
+  std::vector<db::MeshRoot> changed;
+  for (const db::MeshRoot& root : now)
+    if (const db::MeshRoot* old = root_with_id(before, root.mesh); old && !(*old == root))
+      if (mesh.empty() || root.name == mesh) changed.push_back(root);
+  if (changed.size() != 1)
+    throw Error(Errc::invalid_argument,
+                changed.empty() ? fmt::format("version {} changed no mesh that was there before", version.value)
+                                : fmt::format("version {} changed several meshes", version.value),
+                {}, changed.empty() ? "" : "name one with --mesh");
+  CommitOptions reverting = options;
+  if (reverting.message.empty()) reverting.message = fmt::format("revert v{}: {}", version.value, info.message);
+  const Snapshot::Impl from(store, version, changed.front());
+  const Snapshot::Impl to(store, info.parents.front(), *root_with_id(before, changed.front().mesh));
+  return carry_over(from, to, reverting, "revert", {});
+}
+
+}  // namespace ramcdb::detail

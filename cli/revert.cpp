@@ -1,0 +1,61 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "cli/chart_list.h"
+#include "cli/conflict_text.h"
+#include "cli/failure.h"
+#include "cli/json_out.h"
+#include "cli/options.h"
+#include "cli/output.h"
+#include "cli/text.h"
+#include "cli/verbs.h"
+#include "ramcdb/repository.h"
+
+namespace ramcdb::cli {
+namespace {
+
+struct RevertCommand {
+  std::string folder, revision;
+  MeshAt which;
+  CommitOptions options;
+  OutputMode mode;
+};
+
+int run_revert(const RevertCommand& command) {
+  const CommitReport report =
+      Repository::open(command.folder).revert(command.revision, command.which.mesh, command.options);
+  const bool conflict = !report.conflicts.empty();
+  if (command.mode.json)
+    say(commit_json(report));
+  else if (!command.mode.quiet && !conflict)
+    say(report.nothing_changed
+            ? "nothing of it is left to take back: no version written\n"
+            : version_text(report.revision) + " after " + version_text(report.parent) + ": took " + command.revision +
+                  " back, " + counted(report.charts_reencoded, "chart") + " re-encoded, wrote " +
+                  counted(report.bytes_written, "byte") + " in " + duration(report.seconds) + "\n");
+  if (!conflict) return kDone;
+  complain("later versions changed charts " + chart_list(report.conflicts) +
+           " in the same places, nothing was written:" + conflict_text(report.conflict_places) +
+           "revert these versions first, newest first");
+  return kConflict;
+}
+
+}  // namespace
+
+void setup_revert(CLI::App& app, Run& run) {
+  const auto command = std::make_shared<RevertCommand>();
+  CLI::App& verb = *app.add_subcommand("revert", "Take back what one version did, on top of what came later");
+  add_repository(verb, command->folder);
+  verb.add_option("REV", command->revision, "The version to take back")->required();
+  add_mesh(verb, command->which);
+  add_message(verb, command->options.message, false);
+  add_author(verb, command->options.author);
+  verb.add_option("--branch", command->options.branch, "The branch to commit to (default: main)")->type_name("NAME");
+  verb.add_flag("--ignore-locks", command->options.ignore_locks, "Also change charts that others have locked");
+  add_threads(verb, command->options.threads);
+  add_output_mode(verb, command->mode);
+  add_example(verb, "ramcdb revert statues.ramcdb v7 -m \"the horn was better before\"");
+  verb.callback([command, &run] { run = [command] { return run_revert(*command); }; });
+}
+
+}  // namespace ramcdb::cli

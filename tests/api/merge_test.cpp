@@ -1,0 +1,196 @@
+#include <algorithm>
+
+#include "tests/api/temp_repository.h"
+
+/// Edits that meet: merged three ways, on branches, and taken back.
+namespace ramcdb::test {
+namespace {
+
+CommitOptions options(const char* text, bool merge = false) {
+  CommitOptions out = message(text);
+  out.merge = merge;
+  return out;
+}
+
+bool is_inner(const Patch& patch, Patch::Mesh::VertexHandle v) {
+  const std::uint64_t key = patch.mesh().property(patch.key_property(), v);
+  return key != 0 && VertexKey::unpack(key).where == VertexKey::Where::chart;
+}
+
+/// Inner vertices of a patch that were there before, in order of their handles.
+std::vector<Patch::Mesh::VertexHandle> inner(const Patch& patch) {
+  std::vector<Patch::Mesh::VertexHandle> found;
+  for (const auto v : patch.mesh().all_vertices())
+    if (is_inner(patch, v)) found.push_back(v);
+  return found;
+}
+
+Region chart(std::uint32_t id) { return {{OfCharts{{ChartId(id)}}}, 0}; }
+
+/// Moves the n-th inner vertex of a chart by some steps along z.
+void lift(Patch& patch, std::size_t n, int steps) {
+  patch.mesh().point(inner(patch)[n])[2] += steps * patch.base().lattice().step;
+}
+
+/// Splits the n-th face without a border vertex in three.
+void split_face(Patch& patch, std::size_t n) {
+  auto& mesh = patch.mesh();
+  for (const auto f : mesh.all_faces()) {
+    bool inside = true;
+    for (auto v = mesh.cfv_iter(f); v.is_valid(); ++v) inside = inside && is_inner(patch, *v);
+    if (!inside || n-- > 0) continue;
+    mesh.split(f, mesh.calc_face_centroid(f));
+    return;
+  }
+  FAIL() << "the chart has too few faces inside";
+}
+
+class Merge : public ::testing::Test {
+ protected:
+  EditTransaction begin(std::uint32_t id, Patch*& patch, const char* branch = "main") {
+    EditTransaction edit = repository_->begin_edit({}, branch);
+    patch = &edit.checkout(chart(id));
+    return edit;
+  }
+  FaceSet faces(const char* revision = "") { return face_set(whole(repository_->snapshot({}, revision))); }
+  void expect_whole() { EXPECT_TRUE(repository_->verify({}).ok()); }
+
+  TempRepository repository_{scan(8000), 400};
+};
+
+TEST_F(Merge, MovesOfDifferentVerticesOfOneChart) {
+  Patch *a = nullptr, *b = nullptr;
+  EditTransaction mine = begin(4, a), theirs = begin(4, b), late = begin(4, b);
+  lift(*a, 3, 40);
+  lift(*b, 9, 70);
+  EXPECT_EQ(late.commit(options("theirs")).vertices_moved, 1U);
+  EXPECT_EQ(mine.commit(options("mine")).conflicts, std::vector<ChartId>{ChartId(4)}) << "not without being asked";
+  const CommitReport merged = mine.commit(options("mine", true));
+  EXPECT_TRUE(merged.conflicts.empty());
+  EXPECT_TRUE(merged.merged);
+  const DiffReport diff = repository_->diff(repository_->snapshot({}, "1"), repository_->snapshot());
+  EXPECT_EQ(diff.vertices_moved, 2U) << "both are there";
+  expect_whole();
+}
+
+TEST_F(Merge, OneVertexMovedToTwoPlacesIsAConflictWithItsPlace) {
+  Patch *a = nullptr, *b = nullptr;
+  EditTransaction mine = begin(4, a), theirs = begin(4, b);
+  lift(*a, 3, 40);
+  lift(*b, 3, 70);
+  (void)theirs.commit(options("theirs"));
+  const CommitReport report = mine.commit(options("mine", true));
+  EXPECT_EQ(report.conflicts, std::vector<ChartId>{ChartId(4)});
+  ASSERT_EQ(report.conflict_places.size(), 1U);
+  EXPECT_EQ(report.conflict_places.front().chart, ChartId(4));
+  EXPECT_EQ(repository_->resolve("HEAD"), VersionId(2)) << "nothing was written";
+
+  CommitOptions saved = options("mine");
+  saved.onto = "mine";
+  const CommitReport kept = mine.commit(saved);
+  EXPECT_TRUE(kept.conflicts.empty());
+  EXPECT_EQ(kept.parent, VersionId(1)) << "the branch begins where the edit was made";
+  EXPECT_EQ(repository_->resolve("mine"), kept.revision);
+  EXPECT_EQ(repository_->resolve("main"), VersionId(2));
+  expect_whole();
+}
+
+TEST_F(Merge, FacesChangedBesideMovedVertices) {
+  Patch *a = nullptr, *b = nullptr;
+  EditTransaction mine = begin(4, a), theirs = begin(4, b);
+  split_face(*a, 2);
+  lift(*b, inner(*b).size() - 1, 70);
+  (void)theirs.commit(options("theirs"));
+  const auto before = repository_->snapshot().info();
+  const CommitReport merged = mine.commit(options("mine", true));
+  EXPECT_TRUE(merged.conflicts.empty());
+  const auto after = repository_->snapshot().info();
+  EXPECT_EQ(after.faces, before.faces + 2);
+  EXPECT_EQ(after.vertices, before.vertices + 1);
+  EXPECT_EQ(repository_->diff(repository_->snapshot({}, "2"), repository_->snapshot()).vertices_moved, 0U)
+      << "what theirs moved stays where they put it";
+  expect_whole();
+}
+
+TEST_F(Merge, TheSameFacesChangedTwiceAreAConflict) {
+  Patch *a = nullptr, *b = nullptr;
+  EditTransaction mine = begin(4, a), theirs = begin(4, b);
+  split_face(*a, 2);
+  split_face(*b, 2);
+  lift(*b, 0, 5);
+  (void)theirs.commit(options("theirs"));
+  const CommitReport report = mine.commit(options("mine", true));
+  EXPECT_FALSE(report.conflict_places.empty());
+  EXPECT_EQ(repository_->resolve("HEAD"), VersionId(2));
+}
+
+TEST_F(Merge, BranchesOfDifferentChartsBecomeOne) {
+  (void)repository_->create_branch("side");
+  Patch *a = nullptr, *b = nullptr;
+  EditTransaction on_main = begin(2, a), on_side = begin(7, b, "side");
+  lift(*a, 1, 50);
+  split_face(*b, 1);
+  (void)on_main.commit(options("main"));
+  CommitOptions side = options("side");
+  side.branch = "side";
+  const CommitReport other = on_side.commit(side);
+  ASSERT_TRUE(other.conflicts.empty());
+
+  const MergeReport report = repository_->merge("side", options("merged"));
+  EXPECT_EQ(report.base, VersionId(1));
+  EXPECT_EQ(repository_->show("HEAD").parents, (std::vector<VersionId>{VersionId(2), other.revision}));
+  EXPECT_EQ(repository_->snapshot().info().faces, repository_->snapshot({}, "1").info().faces + 2);
+  EXPECT_EQ(repository_->diff(repository_->snapshot({}, other.revision.value ? "side" : ""), repository_->snapshot())
+                .vertices_moved,
+            1U);
+  EXPECT_TRUE(repository_->merge("side", options("again")).nothing_changed);
+  expect_whole();
+}
+
+TEST_F(Merge, ABranchThatIsAheadIsTakenWithoutABlob) {
+  (void)repository_->create_branch("side");
+  Patch* b = nullptr;
+  EditTransaction on_side = begin(7, b, "side");
+  lift(*b, 1, 50);
+  CommitOptions side = options("side");
+  side.branch = "side";
+  (void)on_side.commit(side);
+  const MergeReport report = repository_->merge("side", options("merged"));
+  EXPECT_EQ(report.charts_taken, 1U);
+  EXPECT_TRUE(faces() == faces("side"));
+  expect_whole();
+}
+
+TEST_F(Merge, RevertTakesOneVersionBackAndLeavesLaterOnes) {
+  const FaceSet first = faces();
+  Patch *a = nullptr, *b = nullptr;
+  EditTransaction one = begin(4, a);
+  split_face(*a, 2);
+  lift(*a, 0, 33);
+  ASSERT_TRUE(one.commit(options("one")).conflicts.empty());
+  EditTransaction two = begin(9, b);
+  lift(*b, 4, 20);
+  (void)two.commit(options("two"));
+  const CommitReport report = repository_->revert("2", {}, options("back"));
+  EXPECT_TRUE(report.conflicts.empty());
+  EXPECT_EQ(repository_->diff(repository_->snapshot({}, "1"), repository_->snapshot()).vertices_moved, 1U);
+  (void)repository_->revert("3", {}, options("back, too"));
+  EXPECT_TRUE(faces() == first);
+  EXPECT_TRUE(repository_->revert("3", {}, options("once more")).nothing_changed);
+  expect_whole();
+}
+
+TEST_F(Merge, RevertOfWhatWasChangedAgainIsAConflict) {
+  Patch *a = nullptr, *b = nullptr;
+  EditTransaction one = begin(4, a);
+  lift(*a, 0, 33);
+  (void)one.commit(options("one"));
+  EditTransaction two = begin(4, b);
+  lift(*b, 0, 20);
+  (void)two.commit(options("two"));
+  EXPECT_FALSE(repository_->revert("2", {}, options("back")).conflicts.empty());
+  EXPECT_EQ(repository_->resolve("HEAD"), VersionId(3));
+}
+
+}  // namespace
+}  // namespace ramcdb::test
