@@ -4,6 +4,10 @@
 
 namespace ramcdb::codec {
 
+// Nine tenths of the time is spent here: everything in one piece, and in one for newer processors.
+RAMCDB_FAST_CLONES __attribute__((flatten)) void run(DenseWalk<RangeEncoder, ChartGuide>& walk) { walk.run(); }
+RAMCDB_FAST_CLONES __attribute__((flatten)) void run(DenseWalk<RangeDecoder, NoGuide>& walk) { walk.run(); }
+
 namespace {
 
 template <class Walk>
@@ -55,7 +59,7 @@ std::optional<DenseStream> encode_dense(const Chart& chart, const DenseContext& 
   ChartGuide guide(chart, *edges);
   DenseWalk walk(encoder, guide, context);
   const std::uint64_t start = encoder.position();
-  walk.run();
+  run(walk);
   DenseStream stream;
   stream.coded = result_of(walk, encoder.position() - start);
   stream.bytes = encoder.finish();
@@ -71,7 +75,7 @@ DenseChart decode_dense(Bytes stream, const DenseContext& context) {
   NoGuide guide;
   DenseWalk walk(decoder, guide, context);
   const std::uint64_t start = decoder.position();
-  walk.run();
+  run(walk);
   decoder.finish();
   return result_of(walk, decoder.position() - start);
 }
