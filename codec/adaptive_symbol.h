@@ -39,13 +39,13 @@ inline constexpr auto kTargets = [] {
 }  // namespace adaptive_symbol_detail
 
 /// One of sixteen symbols, with shares of 65536 that are learned while coding, as those of an AdaptiveBit are: quickly
-/// at first, then over the last 120 symbols or so. One such decision takes the place of four or five binary ones. Its
+/// at first, then over the last 250 symbols or so. One such decision takes the place of four or five binary ones. Its
 /// numbers are the same with and without vector instructions.
 class alignas(32) AdaptiveSymbol {
  public:
   static constexpr std::uint32_t kSymbols = 16;
   /// The limits between the symbols (the share of the first i + 1 of them), then how many earlier symbols they stand
-  /// for (at most 120).
+  /// for (at most 250).
   using Lanes = adaptive_symbol_detail::Lanes;
 
   /// All alike.

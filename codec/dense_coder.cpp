@@ -4,11 +4,11 @@
 
 namespace ramcdb::codec {
 
-// Nine tenths of the time is spent here: everything in one piece, and in one for newer processors.
-RAMCDB_FAST_CLONES __attribute__((flatten)) void run(DenseWalk<RangeEncoder, ChartGuide>& walk) { walk.run(); }
-RAMCDB_FAST_CLONES __attribute__((flatten)) void run(DenseWalk<RangeDecoder, NoGuide>& walk) { walk.run(); }
-
 namespace {
+
+// Nine tenths of all time is spent here: in one piece it takes a fifth less.
+__attribute__((flatten)) void run(DenseWalk<RangeEncoder, ChartGuide>& walk) { walk.run(); }
+__attribute__((flatten)) void run(DenseWalk<RangeDecoder, NoGuide>& walk) { walk.run(); }
 
 template <class Walk>
 DenseChart result_of(Walk& walk, std::uint64_t total_cost) {
