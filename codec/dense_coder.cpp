@@ -63,7 +63,7 @@ std::optional<DenseStream> encode_dense(const Chart& chart, const DenseContext& 
   DenseStream stream;
   stream.coded = result_of(walk, encoder.position() - start);
   stream.bytes = encoder.finish();
-  stream.aligned_misses = walk.aligned_misses();
+  stream.misses = walk.misses();
   stream.source_vertex = guide.source_vertices();
   stream.source_corner = guide.source_faces();
   if (!coded_vertices_match(chart, stream) || !coded_faces_match(chart, stream)) return std::nullopt;

@@ -29,6 +29,13 @@ struct DenseContext {
   const CoderTables* tables = nullptr;
 };
 
+/// Coordinates that missed their predictions, and those of them that vertices around have: candidates of aligned
+/// charts.
+struct DenseMisses {
+  std::uint64_t all = 0, aligned = 0;
+  std::uint64_t aligned_bits = 0;  ///< the bit widths of the aligned misses
+};
+
 /// The walk over a chart, from the border inwards, for encoder and decoder alike (Coder and Guide decide which).
 ///
 /// The front starts as all border loops. Again and again the node with the smallest open corner becomes the pivot: the
@@ -79,8 +86,8 @@ class DenseWalk {
   [[nodiscard]] DenseModels& models() { return *models_; }
   /// Whether edges are so long that models for fine lattices are used.
   [[nodiscard]] bool is_fine() const { return context_.edge_exponent > kScaledFrom; }
-  /// How many coordinates missed their prediction, but not the candidates of an aligned chart. Encoders only.
-  [[nodiscard]] std::uint64_t aligned_misses() const { return aligned_misses_; }
+  /// Of encoders only.
+  [[nodiscard]] const DenseMisses& misses() const { return misses_; }
   /// What positions took, in 1/256 bit; the rest is connectivity.
   [[nodiscard]] std::uint64_t geometry_cost() const { return geometry_cost_; }
 
@@ -305,7 +312,7 @@ class DenseWalk {
       if (found) {
         miss = *found - rounded;
       } else {
-        if (Coder::kEncodes && miss != 0) aligned_misses_ += is_aligned(place, prediction.axis(k), wanted[lane]);
+        if (Coder::kEncodes && miss != 0) count_miss(miss, is_aligned(place, prediction.axis(k), wanted[lane]));
         // Towards where the guess was rounded from is plus.
         const bool flip = guess < static_cast<float>(step);
         miss = models_->miss.code(coder_, at, doubt, prediction.activity(k), fine_bits_, flip ? -miss : miss);
@@ -320,6 +327,13 @@ class DenseWalk {
     vertex.normal_miss = 2 * sizes[2];
     surface_.add_vertex(vertex);
     geometry_cost_ += coder_.position() - before;
+  }
+
+  void count_miss(std::int32_t miss, bool aligned) {
+    ++misses_.all;
+    if (!aligned) return;
+    ++misses_.aligned;
+    misses_.aligned_bits += static_cast<std::uint64_t>(std::bit_width(static_cast<std::uint32_t>(std::abs(miss))));
   }
 
   /// Coordinates that vertices around have, and the one that completes a parallelogram with them.
@@ -385,7 +399,8 @@ class DenseWalk {
   std::array<std::size_t, 2> found_before_{};  ///< where the coordinates before of a vertex were found; 4: nowhere
   std::vector<std::uint32_t> touched_;         ///< nodes whose corners a fan changed: so many of these
   std::size_t touched_count_ = 0;
-  std::uint64_t geometry_cost_ = 0, aligned_misses_ = 0;
+  DenseMisses misses_;
+  std::uint64_t geometry_cost_ = 0;
 };
 
 }  // namespace ramcdb::codec
