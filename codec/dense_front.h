@@ -15,6 +15,7 @@ struct FrontNode {
   std::uint32_t prev = 0, next = 0;
   std::uint32_t opposite = kNone;  ///< third vertex of the decoded face behind the edge; kNone on the chart's border
   std::uint32_t live = kNone;      ///< where live() lists it; kNone when it is not on the front any more
+  std::uint32_t angle = 0;         ///< of the open corner, when it was queued last
 };
 
 /// The front: all loops between the decoded part of a chart and the rest, as rings of nodes with the rest on the left,
@@ -67,9 +68,12 @@ class DenseFront {
     nodes_[node].live = kNone;
   }
 
-  /// Queues a node, again if need be, ahead of all others of its bucket, which is below kBuckets.
-  void queue(std::uint32_t node, std::uint32_t bucket) {
+  /// Queues a node, again if need be, ahead of all others whose angles are in the same bucket.
+  void queue(std::uint32_t node, std::uint32_t angle) {
+    constexpr std::uint32_t kBucketWidth = kWholeTurn / kBuckets;
     unqueue(node);
+    nodes_[node].angle = angle;
+    const std::uint32_t bucket = angle / kBucketWidth;
     const std::uint32_t place = kBuckets + node, older = queue_[bucket].older;
     queue_[place] = {older, bucket};
     queue_[older].newer = place;

@@ -5,7 +5,9 @@
 #include <bit>
 #include <cstdint>
 
+#include "codec/adaptive_symbol.h"
 #include "codec/built_in_prior.h"
+#include "codec/dense_math.h"
 #include "codec/range_coder.h"
 #include "ramcdb/error.h"
 
@@ -31,11 +33,11 @@ class FanSizeModel {
         for (std::size_t i = 0; i < 6; ++i) visit(bits[i]);
   }
 
-  /// \param angle in quadrants \param faces of the pivot \param max the largest size that can be meant
+  /// \param angle of corner_angle() \param faces of the pivot \param max the largest size that can be meant
   template <class Coder>
-  std::uint32_t code(Coder& coder, float angle, std::uint32_t faces, bool on_border, std::size_t max,
-                     std::uint32_t size) {
-    const auto angle_class = std::min<std::size_t>(39, static_cast<std::size_t>(10 * angle));
+  RAMCDB_INLINE std::uint32_t code(Coder& coder, std::uint32_t angle, std::uint32_t faces, bool on_border,
+                                   std::size_t max, std::uint32_t size) {
+    const std::size_t angle_class = angle * 40 / kWholeTurn;
     auto& bits = bits_[angle_class][on_border ? 9 : std::min<std::size_t>(8, faces)];
     std::uint32_t n = 0;
     while (coder.code(bits[std::min<std::size_t>(15, n)], size > n)) {
@@ -48,61 +50,68 @@ class FanSizeModel {
   std::array<std::array<std::array<AdaptiveBit, 16>, 10>, 40> bits_;
 };
 
-/// How far a coordinate is from its prediction, in one context: zero?, sign, exponent in unary, two more bits of the
-/// magnitude, the rest raw. The rounded-off fraction of the prediction tells which neighbour is the likelier.
-class MissModel {
- public:
+/// How far a coordinate is from its prediction, in one go: sixteen symbols for its sign and size.
+///
+/// On fine lattices the lowest bits say nothing, and are sent raw. Of what is above them, symbol 0 is 0; symbols 1 to
+/// 14 are, with a plus and a minus sign in turn, the sizes 1, 2, 3, 4-5, 6-7, 8-11, 12-15, with raw bits for which one;
+/// symbol 15 is all others, with a symbol of their own for sign and bit width.
+struct MissModels {
+  static constexpr std::size_t kActivities = 16, kDoubts = 12;
+
+  std::array<AdaptiveSymbol, 3 * kDoubts * kActivities> misses;
+  std::array<AdaptiveSymbol, 3 * kActivities> large;
+  std::array<AdaptiveBit, 32> large_half;  ///< the second-highest bit of a large size, by its bit width
+
   template <class Visit>
   void visit_built_in(Visit&& visit) {
-    for (AdaptiveBit& bit : nonzero_) visit(bit);
-    for (AdaptiveBit& bit : negative_) visit(bit);
-    for (std::size_t i = 0; i < 12; ++i) visit(exponent_[i]);
-    for (std::size_t i = 1; i < 7; ++i) visit(second_[i]);
+    for (AdaptiveSymbol& model : misses) visit(model);
+    for (AdaptiveSymbol& model : large) visit(model);
   }
 
-  /// \param fraction prediction less its rounded value, in [-1/2, 1/2]
+  /// \param k 0, 1: first and second tangential axis, 2: the axis along the normal \param fine how many bits are raw
   template <class Coder>
-  std::int32_t code(Coder& coder, float fraction, std::int32_t miss) {
-    const float size = fraction < 0 ? -fraction : fraction;
-    const std::size_t third = std::size_t{size >= 0.17F} + std::size_t{size >= 0.33F};
-    if (!coder.code(nonzero_[third], miss != 0)) return 0;
-    const bool flip = fraction < 0;
-    const bool negative = coder.code(negative_[third], (miss < 0) != flip) != flip;
-
-    const std::uint32_t wanted = miss < 0 ? 0u - static_cast<std::uint32_t>(miss) : static_cast<std::uint32_t>(miss);
-    const int wanted_exponent = static_cast<int>(std::bit_width(wanted)) - 1;
-    int exponent = 0;
-    while (exponent < 31 &&
-           coder.code(exponent_[static_cast<std::size_t>(std::min(15, exponent))], wanted_exponent > exponent))
-      ++exponent;
-
-    std::uint32_t magnitude = 1;
-    int left = exponent;
-    const auto cap = static_cast<std::size_t>(std::min(15, exponent));
-    if (left > 0) {
-      magnitude = 2 | static_cast<std::uint32_t>(coder.code(second_[cap], (wanted >> --left) & 1));
-      if (left > 0) {
-        auto& bit = third_[2 * cap + (magnitude & 1)];
-        magnitude = magnitude << 1 | static_cast<std::uint32_t>(coder.code(bit, (wanted >> --left) & 1));
-      }
-    }
-    magnitude = magnitude << left | coder.code_raw(wanted & ((1u << left) - 1), left);
-    return static_cast<std::int32_t>(negative ? 0u - magnitude : magnitude);
+  std::int32_t code(Coder& coder, std::size_t k, std::size_t doubt, std::size_t activity, int fine, std::int32_t miss) {
+    const std::int32_t above = miss >> fine;
+    const auto low = static_cast<std::uint32_t>(miss) & ((1U << fine) - 1);
+    const std::uint32_t size = above < 0 ? 0U - static_cast<std::uint32_t>(above) : static_cast<std::uint32_t>(above);
+    std::uint32_t symbol = 0;
+    if constexpr (Coder::kEncodes) symbol = size < 16 ? 2 * kSizeClass[size] - (above > 0) : 15;
+    symbol = coder.code_symbol(misses[(k * kDoubts + doubt) * kActivities + activity], symbol);
+    if (symbol == 15) return code_large(coder, large[k * kActivities + activity], fine, above, low);
+    const std::size_t size_class = (symbol + 1) / 2;
+    const int raw_bits = kRawBits[size_class] + fine;
+    std::uint32_t raw = (size - kLeastSize[size_class]) << fine | low;
+    raw = raw_bits > 0 ? coder.code_raw(raw, raw_bits) : 0;
+    return joined(symbol % 2 == 0, kLeastSize[size_class] + (raw >> fine), fine, raw & ((1U << fine) - 1));
   }
 
  private:
-  std::array<AdaptiveBit, 3> nonzero_;
-  std::array<AdaptiveBit, 3> negative_;
-  std::array<AdaptiveBit, 16> exponent_;
-  std::array<AdaptiveBit, 16> second_;
-  std::array<AdaptiveBit, 32> third_;
+  static constexpr std::array<std::uint8_t, 16> kSizeClass{0, 1, 2, 3, 4, 4, 5, 5, 6, 6, 6, 6, 7, 7, 7, 7};
+  static constexpr std::array<std::uint8_t, 8> kLeastSize{0, 1, 2, 3, 4, 6, 8, 12};
+  static constexpr std::array<std::uint8_t, 8> kRawBits{0, 0, 0, 0, 1, 1, 2, 2};
+
+  static std::int32_t joined(bool negative, std::uint32_t size, int fine, std::uint32_t low) {
+    return static_cast<std::int32_t>((negative ? 0U - size : size) << fine | low);
+  }
+
+  /// A size of 16 and more: with its bit width less 5, up to 6, the symbols are plus and minus in turn, 14 and 15 are
+  /// for all above, which is sent raw; then the bits below the highest.
+  template <class Coder>
+  std::int32_t code_large(Coder& coder, AdaptiveSymbol& model, int fine, std::int32_t above, std::uint32_t low) {
+    const std::uint32_t size = above < 0 ? 0U - static_cast<std::uint32_t>(above) : static_cast<std::uint32_t>(above);
+    std::uint32_t width = Coder::kEncodes ? static_cast<std::uint32_t>(std::bit_width(size)) - 5 : 0;
+    const std::uint32_t symbol = coder.code_symbol(model, 2 * std::min(width, 7U) + (above < 0));
+    width = symbol < 14 ? symbol / 2 : 7 + coder.code_raw(width - 7, 5);
+    if (width > 26) throw Error(Errc::corrupt, "a chart has a vertex beyond any lattice");
+    const int below = static_cast<int>(width) + 3;  // bits below the two highest
+    std::uint32_t found = 2U | coder.code(large_half[width], (size >> below) & 1);
+    found = found << below | coder.code_raw(size & ((1U << below) - 1), below);
+    return joined(symbol % 2 != 0, found, fine, coder.code_raw(low, fine));
+  }
 };
 
 /// All of a chart's models.
 struct DenseModels {
-  static constexpr int kActivities = 16;
-  static constexpr int kEdgeSizes = 10;
-
   FanSizeModel fan_size;
   std::array<std::array<AdaptiveBit, 16>, 4> join;  ///< by edges left at the pivot, by size of the front
   AdaptiveUnsigned join_rank;
@@ -110,32 +119,35 @@ struct DenseModels {
   std::array<AdaptiveSigned, 3> isolated;  ///< vertices without faces, by axis
   /// Whether a coordinate is the i-th candidate, by axis and where the two before were found.
   std::array<std::array<std::array<std::array<AdaptiveBit, 4>, 5>, 5>, 3> aligned;
-  std::array<MissModel, 3 * kActivities * kEdgeSizes> misses;
+  MissModels miss;
 
   /// Begins with what is built in: for fine lattices, whose misses have many bits, and for others.
   static const DenseModels& built_in(bool is_fine) {
-    static const std::array<DenseModels, 2> both{DenseModels(kBuiltInPrior[0]), DenseModels(kBuiltInPrior[1])};
+    static const std::array<DenseModels, 2> both{DenseModels(kBuiltInBits[0], kBuiltInSymbols[0]),
+                                                 DenseModels(kBuiltInBits[1], kBuiltInSymbols[1])};
     return both[is_fine];
   }
 
+  /// Calls `visit` with every bit, then every symbol that has a built-in beginning, in a fixed order.
   template <class Visit>
   void visit_built_in(Visit&& visit) {
     fan_size.visit_built_in(visit);
     for (auto& bits : join)
       for (AdaptiveBit& bit : bits) visit(bit);
-    for (MissModel& model : misses) model.visit_built_in(visit);
-  }
-
-  /// \param kind 0, 1: first and second tangential axis, 2: the axis along the normal
-  MissModel& miss(int kind, int activity, int edge_size) {
-    return misses[static_cast<std::size_t>((kind * kActivities + activity) * kEdgeSizes + edge_size)];
+    miss.visit_built_in(visit);
   }
 
  private:
-  template <class Prior>
-  explicit DenseModels(const Prior& prior) {
-    const std::uint16_t* next = prior.data();
-    visit_built_in([&](AdaptiveBit& bit) { bit = built_in_bit(*next++); });
+  struct Beginnings {
+    const std::uint16_t* bit;
+    const AdaptiveSymbol::Lanes* symbol;
+    void operator()(AdaptiveBit& model) { model = built_in_bit(*bit++); }
+    void operator()(AdaptiveSymbol& model) { model = AdaptiveSymbol(*symbol++); }
+  };
+
+  template <class Bits, class Symbols>
+  DenseModels(const Bits& bits, const Symbols& symbols) {
+    visit_built_in(Beginnings{bits.data(), symbols.data()});
   }
 };
 

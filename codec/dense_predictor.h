@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <optional>
 
 #include "codec/dense_models.h"
 #include "codec/dense_surface.h"
@@ -19,7 +18,7 @@ struct FanPlace {
   std::uint32_t behind_current = kNone;  ///< third vertex of the decoded face at edge current-pivot, if there is one
   std::uint32_t behind_next = kNone;     ///< ... at edge pivot-next
   std::uint32_t edges_left = 1;          ///< edges still missing in the corner, this one included; >= 1
-  float angle = 0;                       ///< of the corner, in quadrants
+  std::uint32_t angle = 0;               ///< of the corner, of corner_angle()
   Vec normal;                            ///< unit normal at the pivot
 };
 
@@ -29,7 +28,7 @@ inline constexpr std::array<int, 5> kAxes{1, 2, 0, 1, 2};
 /// What a new vertex is guessed from, apart from weights.
 struct FanVectors {
   std::array<Vec, 6> vectors;  ///< a, b, c, d, N x a, N x b of FanPrediction
-  float reach = 0;             ///< |a| + |b|
+  float reach = 0;             ///< the coordinates of a and b, all sizes added
   int main_axis = 0;           ///< that of the largest component of N
   std::size_t fan_class = 0, plane_class = 0;
 
@@ -39,9 +38,14 @@ struct FanVectors {
   [[nodiscard]] int axis(int k) const { return kAxes[static_cast<std::size_t>(main_axis + k)]; }
 };
 
-/// The height along `main_axis` of the plane through `at` with some normal, over the coordinates x and y of the other
-/// axes, in their order; nothing when it is too steep to tell.
-[[nodiscard]] std::optional<float> plane_height(const Vec& normal, const Vec& at, int main_axis, float x, float y);
+/// A plane as heights along a main axis over the coordinates x and y of the other axes, in their order.
+struct HeightPlane {
+  float base = 0, slope_x = 0, slope_y = 0;
+  bool tells = false;  ///< whether it is flat enough to say anything
+
+  HeightPlane(const Vec& normal, const Vec& at, int main_axis);
+  [[nodiscard]] float height(float x, float y) const { return base - (slope_x * x + slope_y * y); }
+};
 
 /// Guesses a new vertex from the fan around its pivot.
 ///
@@ -52,34 +56,40 @@ struct FanVectors {
 /// Coordinates are coded one after the other; the one that N mostly points along comes last, since the surface tells
 /// most about it once the others are known: it is moved into the plane through the guess, and then by a weighted sum
 /// of what the tangent planes at pivot, current and next say. Everything is relative to the pivot.
+///
+/// Two numbers choose the models of a coordinate: how much predictions missed around here, and how much the guess is in
+/// doubt: how far parallelograms would have it elsewhere or, for the last coordinate, how far the planes disagree.
 class FanPrediction {
  public:
-  /// \param activity_scale multiplies lengths before they choose contexts
+  /// \param scale multiplies lengths before they choose contexts
   FanPrediction(const DenseSurface& surface, const CoderTables& tables, const FanPlace& place, float scale);
 
   /// The axis that is coded k-th, k = 0, 1, 2.
   [[nodiscard]] int axis(int k) const { return fan_.axis(k); }
-  /// The guess for coordinate axis(k), less the pivot's. REQUIRES: the coordinates before it were given to known().
-  [[nodiscard]] float guess(int k) const;
-  /// Tells coordinate axis(k), less the pivot's, which guess(k) was made for.
-  void known(int k, std::int32_t coordinate);
-
-  /// Contexts of coordinate axis(k): how well predictions went around here (0..15), and how long edges are (0..9).
-  [[nodiscard]] int activity(int k) const { return k < 2 ? tangential_activity_ : normal_activity_; }
-  [[nodiscard]] int edge_size() const { return edge_size_; }
+  struct Guess {
+    float coordinate;   ///< less the pivot's
+    std::size_t doubt;  ///< below MissModels::kDoubts
+  };
+  /// The guess for coordinate axis(k), k = 0, 1.
+  [[nodiscard]] Guess first_guess(int k) const;
+  /// The guess for coordinate axis(2), when those before are x and y, less the pivot's.
+  [[nodiscard]] Guess last_guess(float x, float y) const;
+  /// How well predictions of coordinate axis(k) went around here, below MissModels::kActivities.
+  [[nodiscard]] std::size_t activity(int k) const { return k < 2 ? tangential_activity_ : normal_activity_; }
 
  private:
-  void choose_contexts(float scale);
-  [[nodiscard]] float plane_shift(std::uint32_t vertex, const Vec& at, float from) const;
+  void choose_activities(const DenseSurface& surface, const FanPlace& place);
+  [[nodiscard]] std::size_t doubt(float apart) const {
+    return std::min<std::size_t>(MissModels::kDoubts - 1, half_octave(apart * (2 * scale_)));
+  }
 
-  const DenseSurface& surface_;
-  const FanPlace& place_;
   FanVectors fan_;
   const PlaneWeights& plane_weights_;
-  Vec guess_;
-  int tangential_activity_ = 0, normal_activity_ = 0, edge_size_ = 0;
-  std::array<float, 2> known_{};  ///< the first two coordinates
-  std::array<float, 2> miss_{};   ///< coordinate less guess, not rounded, of the first two axes
+  Vec guess_, doubt_;
+  float scale_;
+  std::size_t tangential_activity_ = 0, normal_activity_ = 0;
+  HeightPlane through_guess_;
+  std::array<HeightPlane, 3> planes_;  ///< at pivot, current and next
 };
 
 // ---- definitions: of the innermost loop, so in the header ----
@@ -87,10 +97,10 @@ class FanPrediction {
 namespace dense_predictor_detail {
 
 inline std::size_t fan_class_of(const FanPlace& place) {
-  const float degrees = 90 * place.angle / (static_cast<float>(place.edges_left) + 1);
-  constexpr std::array<float, 7> kLimits{36, 46, 54, 62, 70, 82, 98};
+  const std::uint32_t degrees = 90 * place.angle, parts = kWholeTurn / 4 * (std::min(place.edges_left, 63U) + 1);
+  constexpr std::array<std::uint32_t, 7> kLimits{36, 46, 54, 62, 70, 82, 98};
   std::size_t angle_class = 0;
-  for (const float limit : kLimits) angle_class += degrees >= limit;
+  for (const std::uint32_t limit : kLimits) angle_class += degrees >= limit * parts;
   return ((std::min(place.edges_left, 3u) - 1) * 8 + angle_class) * 4 + 2 * (place.behind_current != kNone) +
          (place.behind_next != kNone);
 }
@@ -108,6 +118,12 @@ inline int axis_of_largest(Vec v) {
 
 inline constexpr float kWeightUnit = 1.0F / 128;
 
+inline Vec weighted(const FanVectors& fan, const FanWeights& weights) {
+  Vec sum;
+  for (std::size_t i = 0; i < weights.size(); ++i) sum = sum + fan.vectors[i] * (weights[i] * kWeightUnit);
+  return sum;
+}
+
 }  // namespace dense_predictor_detail
 
 inline FanVectors::FanVectors(const DenseSurface& surface, const FanPlace& place)
@@ -123,78 +139,87 @@ inline FanVectors::FanVectors(const DenseSurface& surface, const FanPlace& place
              from_pivot(place.behind_next),
              cross(place.normal, a),
              cross(place.normal, b)};
-  reach = std::sqrt(squared_length(a)) + std::sqrt(squared_length(b));
+  reach = extent(a) + extent(b);
+}
+
+inline HeightPlane::HeightPlane(const Vec& normal, const Vec& at, int main_axis) {
+  const float up = normal[main_axis];
+  tells = up * up * 16 > squared_length(normal);
+  if (!tells) return;
+  const int first = kAxes[static_cast<std::size_t>(main_axis)], second = kAxes[static_cast<std::size_t>(main_axis) + 1];
+  const float steepness = 1 / up;
+  slope_x = normal[first] * steepness;
+  slope_y = normal[second] * steepness;
+  base = at[main_axis] + (slope_x * at[first] + slope_y * at[second]);
 }
 
 inline FanPrediction::FanPrediction(const DenseSurface& surface, const CoderTables& tables, const FanPlace& place,
                                     float scale)
-    : surface_(surface), place_(place), fan_(surface, place), plane_weights_(tables.plane[fan_.plane_class]) {
-  const FanWeights& weights = tables.fan[fan_.fan_class];
-  for (std::size_t i = 0; i < weights.size(); ++i)
-    guess_ = guess_ + fan_.vectors[i] * (weights[i] * dense_predictor_detail::kWeightUnit);
-  choose_contexts(scale);
+    : fan_(surface, place),
+      plane_weights_(tables.plane[fan_.plane_class]),
+      guess_(dense_predictor_detail::weighted(fan_, tables.fan[fan_.fan_class])),
+      scale_(scale),
+      through_guess_(place.normal, guess_, fan_.main_axis),
+      planes_{HeightPlane(surface[place.pivot].normal, {}, fan_.main_axis),
+              HeightPlane(surface[place.current].normal, fan_.vectors[0], fan_.main_axis),
+              HeightPlane(surface[place.next].normal, fan_.vectors[1], fan_.main_axis)} {
+  const auto& [a, b, c, d, across_a, across_b] = fan_.vectors;
+  if (place.behind_current != kNone) doubt_ = distances(guess_, a - c);
+  if (place.edges_left == 1) {
+    doubt_ = larger(doubt_, distances(guess_, a + b));
+    if (place.behind_next != kNone) doubt_ = larger(doubt_, distances(guess_, b - d));
+  }
+  choose_activities(surface, place);
 }
 
-inline void FanPrediction::choose_contexts(float scale) {
+inline void FanPrediction::choose_activities(const DenseSurface& surface, const FanPlace& place) {
   float tangential = 0, normal = 0, count = 0;
   const auto consult = [&](std::uint32_t v, float weight) {
-    if (v == kNone || surface_[v].tangential < 0) return;
-    tangential += weight * surface_[v].tangential;
-    normal += weight * surface_[v].normal_miss;
+    if (v == kNone || surface[v].tangential < 0) return;
+    tangential += weight * surface[v].tangential;
+    normal += weight * surface[v].normal_miss;
     count += weight;
   };
-  consult(place_.pivot, 2);
-  consult(place_.current, 2);
-  consult(place_.next, 2);
-  consult(place_.behind_current, 1);
-  consult(place_.behind_next, 1);
+  consult(place.pivot, 2);
+  consult(place.current, 2);
+  consult(place.next, 2);
+  consult(place.behind_current, 1);
+  consult(place.behind_next, 1);
 
-  constexpr int kUnknown = DenseModels::kActivities - 1;
+  constexpr std::size_t kUnknown = MissModels::kActivities - 1;
   tangential_activity_ = normal_activity_ = kUnknown;
   if (count > 0) {
-    const float mean = 4 * scale / count;
-    tangential_activity_ = std::min(kUnknown - 1, half_octave(tangential * mean));
-    normal_activity_ = std::min(kUnknown - 1, half_octave(normal * mean));
+    const float mean = 4 * scale_ / count;
+    tangential_activity_ = std::min<std::size_t>(kUnknown - 1, half_octave(tangential * mean));
+    normal_activity_ = std::min<std::size_t>(kUnknown - 1, half_octave(normal * mean));
   }
-  edge_size_ = std::clamp(half_octave(fan_.reach * scale) / 2 - 1, 0, DenseModels::kEdgeSizes - 1);
 }
 
-inline float FanPrediction::guess(int k) const {
-  float value = guess_[axis(k)];
-  if (k == 2) {
-    const Vec& n = place_.normal;
-    value -= (n[axis(0)] * miss_[0] + n[axis(1)] * miss_[1]) / n[fan_.main_axis];
-    const std::array<float, 3> shifts{plane_shift(place_.pivot, {}, value),
-                                      plane_shift(place_.current, fan_.vectors[0], value),
-                                      plane_shift(place_.next, fan_.vectors[1], value)};
-    for (std::size_t i = 0; i < shifts.size(); ++i)
-      value += shifts[i] * (plane_weights_[i] * dense_predictor_detail::kWeightUnit);
-  }
-  // Weights of a hostile table and vast lattices end here; no coordinate lies beyond.
+namespace dense_predictor_detail {
+
+/// Weights of a hostile table and vast lattices end here; no coordinate lies beyond.
+inline float on_lattice(float coordinate) {
   constexpr auto kLimit = static_cast<float>(kMaxLatticeCoordinate);
-  return std::clamp(value, -kLimit, kLimit);
+  return std::clamp(coordinate, -kLimit, kLimit);
 }
 
-inline void FanPrediction::known(int k, std::int32_t coordinate) {
-  if (k < 2) {
-    const auto at = static_cast<std::size_t>(k);
-    known_[at] = static_cast<float>(coordinate);
-    miss_[at] = known_[at] - guess_[axis(k)];
+}  // namespace dense_predictor_detail
+
+inline FanPrediction::Guess FanPrediction::first_guess(int k) const {
+  return {dense_predictor_detail::on_lattice(guess_[axis(k)]), doubt(doubt_[axis(k)])};
+}
+
+inline FanPrediction::Guess FanPrediction::last_guess(float x, float y) const {
+  const float from = through_guess_.height(x, y);
+  float moved = from, least = 0, most = 0;
+  for (std::size_t i = 0; i < planes_.size(); ++i) {
+    // How far above the plane passes, never more than the fan's reach; 0 when it does not tell.
+    const float shift = planes_[i].tells ? std::clamp(planes_[i].height(x, y) - from, -fan_.reach, fan_.reach) : 0;
+    moved += shift * (plane_weights_[i] * dense_predictor_detail::kWeightUnit);
+    least = i == 0 ? shift : std::min(least, shift);
+    most = i == 0 ? shift : std::max(most, shift);
   }
-}
-
-/// How far above `from` the tangent plane at a vertex, which is at `at`, passes, never more than the fan's reach; 0
-/// when it does not tell.
-inline float FanPrediction::plane_shift(std::uint32_t vertex, const Vec& at, float from) const {
-  const auto height = plane_height(surface_[vertex].normal, at, fan_.main_axis, known_[0], known_[1]);
-  return height ? std::clamp(*height - from, -fan_.reach, fan_.reach) : 0;
-}
-
-inline std::optional<float> plane_height(const Vec& normal, const Vec& at, int main_axis, float x, float y) {
-  const float up = normal[main_axis];
-  if (!(up * up * 16 > squared_length(normal))) return std::nullopt;
-  const int first = kAxes[static_cast<std::size_t>(main_axis)], second = kAxes[static_cast<std::size_t>(main_axis) + 1];
-  return at[main_axis] - (normal[first] * (x - at[first]) + normal[second] * (y - at[second])) / up;
+  return {dense_predictor_detail::on_lattice(moved), doubt(most - least)};
 }
 
 }  // namespace ramcdb::codec

@@ -38,6 +38,7 @@ class TrainingCoder {
   explicit TrainingCoder(std::vector<Sample>& samples) : samples_(samples) {}
 
   bool code(AdaptiveBit& /*model*/, bool bit) { return bit; }
+  std::uint32_t code_symbol(AdaptiveSymbol& /*model*/, std::uint32_t symbol) { return symbol; }
   std::uint32_t code_raw(std::uint32_t value, int /*bits*/) { return value; }
   [[nodiscard]] std::uint64_t position() const { return 0; }
 
@@ -47,10 +48,9 @@ class TrainingCoder {
     const std::array<std::uint32_t, 3> around{place.pivot, place.current, place.next};
     for (std::size_t i = 0; i < around.size(); ++i) {
       const Vec at = difference(surface[around[i]], surface[place.pivot]);
-      const auto height = plane_height(surface[around[i]].normal, at, sample.fan.main_axis,
-                                       sample.target[sample.fan.axis(0)], sample.target[sample.fan.axis(1)]);
-      sample.has_plane[i] = height.has_value();
-      if (height) sample.planes[i] = *height;
+      const HeightPlane plane(surface[around[i]].normal, at, sample.fan.main_axis);
+      sample.has_plane[i] = plane.tells;
+      sample.planes[i] = plane.height(sample.target[sample.fan.axis(0)], sample.target[sample.fan.axis(1)]);
     }
     samples_.push_back(sample);
   }

@@ -29,6 +29,13 @@ struct DenseContext {
   const CoderTables* tables = nullptr;
 };
 
+/// Coordinates that missed their predictions, and those of them that vertices around have: candidates of aligned
+/// charts.
+struct DenseMisses {
+  std::uint64_t all = 0, aligned = 0;
+  std::uint64_t aligned_bits = 0;  ///< the bit widths of the aligned misses
+};
+
 /// The walk over a chart, from the border inwards, for encoder and decoder alike (Coder and Guide decide which).
 ///
 /// The front starts as all border loops. Again and again the node with the smallest open corner becomes the pivot: the
@@ -58,7 +65,8 @@ class DenseWalk {
         surface_(context.border, context.counts, context.expected),
         join_search_(surface_, front_, std::min(context.edge_exponent + 1, 31)),
         models_(std::make_unique<DenseModels>(DenseModels::built_in(is_fine()))),
-        scale_(1 / static_cast<float>(std::uint64_t{1} << std::max(0, context.edge_exponent - kScaledFrom))) {
+        fine_bits_(std::max(0, context.edge_exponent - kScaledFrom)),
+        scale_(1 / static_cast<float>(std::uint64_t{1} << fine_bits_)) {
     front_.reserve(context.border.size() + context.expected.inner_vertices + 16);
   }
 
@@ -78,8 +86,8 @@ class DenseWalk {
   [[nodiscard]] DenseModels& models() { return *models_; }
   /// Whether edges are so long that models for fine lattices are used.
   [[nodiscard]] bool is_fine() const { return context_.edge_exponent > kScaledFrom; }
-  /// How many coordinates missed their prediction, but not the candidates of an aligned chart. Encoders only.
-  [[nodiscard]] std::uint64_t aligned_misses() const { return aligned_misses_; }
+  /// Of encoders only.
+  [[nodiscard]] const DenseMisses& misses() const { return misses_; }
   /// What positions took, in 1/256 bit; the rest is connectivity.
   [[nodiscard]] std::uint64_t geometry_cost() const { return geometry_cost_; }
 
@@ -131,11 +139,11 @@ class DenseWalk {
   void code_fan(std::uint32_t pivot) {
     FanPlace place;
     place.pivot = front_[pivot].vertex;
-    place.angle = open_angle(pivot, normal_at(pivot));
+    place.angle = front_[pivot].angle;
     std::uint32_t current = front_[pivot].prev;
-    touched_.assign(1, current);
-
     const std::uint32_t inside = code_fan_size(pivot, place);
+    begin_touching(inside);
+    touch(current);
     if (inside > 0) place.normal = unit_or(normal_at(pivot), {0, 0, 1});
     place.behind_current = front_[current].opposite;
     for (place.edges_left = inside; place.edges_left > 0; --place.edges_left) {
@@ -150,9 +158,16 @@ class DenseWalk {
       place.behind_current = place.current;
     }
     close_fan(pivot, current);
-    for (const std::uint32_t node : touched_)
-      if (front_[node].live != kNone) requeue(node);
+    for (std::size_t i = 0; i < touched_count_; ++i)
+      if (front_[touched_[i]].live != kNone) requeue(touched_[i]);
   }
+
+  /// Makes room for the nodes whose corners a fan changes: two of each new vertex or join, and those at the sides.
+  void begin_touching(std::uint32_t inside) {
+    if (touched_.size() < 2 * std::size_t{inside} + 2) touched_.resize(2 * std::size_t{inside} + 2);
+    touched_count_ = 0;
+  }
+  void touch(std::uint32_t node) { touched_[touched_count_++] = node; }
 
   std::uint32_t code_fan_size(std::uint32_t pivot, const FanPlace& place) {
     const std::uint32_t inside = guide_.begin_fan(front_[pivot].prev, pivot);
@@ -175,7 +190,7 @@ class DenseWalk {
     front_.link(node, pivot);
     front_.set_opposite(current, place.pivot);
     guide_.face_opened(current, node);
-    touched_.push_back(node);
+    touch(node);
     return node;
   }
 
@@ -192,8 +207,8 @@ class DenseWalk {
     front_.link(current, there);
     front_.set_opposite(current, place.pivot);
     guide_.face_opened(current, here);
-    touched_.push_back(there);
-    touched_.push_back(here);
+    touch(there);
+    touch(here);
     remove_if_pair(current);
     return here;
   }
@@ -205,7 +220,7 @@ class DenseWalk {
     front_.set_opposite(current, vertex);
     guide_.fan_closed(current);
     remove_node(pivot);
-    touched_.push_back(next);
+    touch(next);
     remove_if_pair(current);
   }
 
@@ -229,14 +244,10 @@ class DenseWalk {
 
   void requeue(std::uint32_t node) {
     const auto [to_next, to_prev] = sides(node);
-    front_.queue(node, corner_sixteenth(to_next, to_prev, normal_at(node)));
+    front_.queue(node, corner_angle(to_next, to_prev, normal_at(node)));
   }
 
-  [[nodiscard]] float open_angle(std::uint32_t node, Vec normal) const {
-    const auto [to_next, to_prev] = sides(node);
-    return corner_angle(to_next, to_prev, normal);
-  }
-  [[nodiscard]] float open_angle(const FanPlace& place) const {
+  [[nodiscard]] std::uint32_t open_angle(const FanPlace& place) const {
     const DenseVertex& pivot = surface_[place.pivot];
     return corner_angle(difference(surface_[place.next], pivot), difference(surface_[place.current], pivot),
                         place.normal);
@@ -286,35 +297,43 @@ class DenseWalk {
       return;
     }
     const std::uint64_t before = coder_.position();
-    FanPrediction prediction(surface_, *context_.tables, place, scale_);
+    const FanPrediction prediction(surface_, *context_.tables, place, scale_);
     const auto pivot = lanes(surface_[place.pivot].position), wanted = lanes(actual);
     std::array<std::int32_t, 3> point{};
-    std::array<float, 3> sizes{};
+    std::array<float, 3> sizes{}, known{};
     for (int k = 0; k < 3; ++k) {
-      const int axis = prediction.axis(k);
-      const auto lane = static_cast<std::size_t>(axis);
-      const float guess = prediction.guess(k);
+      const auto at = static_cast<std::size_t>(k), lane = static_cast<std::size_t>(prediction.axis(k));
+      const auto [guess, doubt] = k < 2 ? prediction.first_guess(k) : prediction.last_guess(known[0], known[1]);
       const std::int32_t step = round_half_up(guess);
       const std::int32_t rounded = clamp_to_lattice(std::int64_t{pivot[lane]} + step);
-      std::int32_t miss = 0;
+      std::int32_t miss = Coder::kEncodes ? wanted[lane] - rounded : 0;
       const std::optional<std::int32_t> found =
-          context_.aligned ? code_aligned(place, k, axis, wanted[lane]) : std::nullopt;
+          context_.aligned ? code_aligned(place, k, prediction.axis(k), wanted[lane]) : std::nullopt;
       if (found) {
         miss = *found - rounded;
       } else {
-        MissModel& model = models_->miss(k, prediction.activity(k), prediction.edge_size());
-        miss = model.code(coder_, guess - static_cast<float>(step), Coder::kEncodes ? wanted[lane] - rounded : 0);
-        if (Coder::kEncodes && miss != 0) aligned_misses_ += is_aligned(place, axis, wanted[lane]);
+        if (Coder::kEncodes && miss != 0) count_miss(miss, is_aligned(place, prediction.axis(k), wanted[lane]));
+        // Towards where the guess was rounded from is plus.
+        const bool flip = guess < static_cast<float>(step);
+        miss = models_->miss.code(coder_, at, doubt, prediction.activity(k), fine_bits_, flip ? -miss : miss);
+        if (flip) miss = static_cast<std::int32_t>(0U - static_cast<std::uint32_t>(miss));
       }
       point[lane] = in_box(std::int64_t{rounded} + miss, lane);
-      prediction.known(k, point[lane] - pivot[lane]);
-      sizes[static_cast<std::size_t>(k)] = std::abs(static_cast<float>(miss));
+      known[at] = static_cast<float>(point[lane] - pivot[lane]);
+      sizes[at] = std::abs(static_cast<float>(miss));
     }
     DenseVertex vertex{std::bit_cast<LatticePoint>(point)};
     vertex.tangential = sizes[0] + sizes[1];
     vertex.normal_miss = 2 * sizes[2];
     surface_.add_vertex(vertex);
     geometry_cost_ += coder_.position() - before;
+  }
+
+  void count_miss(std::int32_t miss, bool aligned) {
+    ++misses_.all;
+    if (!aligned) return;
+    ++misses_.aligned;
+    misses_.aligned_bits += static_cast<std::uint64_t>(std::bit_width(static_cast<std::uint32_t>(std::abs(miss))));
   }
 
   /// Coordinates that vertices around have, and the one that completes a parallelogram with them.
@@ -373,12 +392,15 @@ class DenseWalk {
   DenseFront front_;
   JoinSearch join_search_;
   std::unique_ptr<DenseModels> models_;
+  int fine_bits_;
   float scale_;
   std::array<std::int32_t, 3> lo_ = lanes(context_.box.lo), hi_ = lanes(context_.box.hi);
   Vec loops_area_;
   std::array<std::size_t, 2> found_before_{};  ///< where the coordinates before of a vertex were found; 4: nowhere
-  std::vector<std::uint32_t> touched_;         ///< nodes whose corners a fan changed
-  std::uint64_t geometry_cost_ = 0, aligned_misses_ = 0;
+  std::vector<std::uint32_t> touched_;         ///< nodes whose corners a fan changed: so many of these
+  std::size_t touched_count_ = 0;
+  DenseMisses misses_;
+  std::uint64_t geometry_cost_ = 0;
 };
 
 }  // namespace ramcdb::codec

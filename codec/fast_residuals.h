@@ -10,10 +10,10 @@
 #include "codec/fast_plan.h"
 #include "codec/fast_scales.h"
 #include "codec/fast_tables.h"
-#include "codec/fast_vector.h"
 #include "codec/raw_array.h"
 #include "codec/raw_bits.h"
 #include "codec/varint.h"
+#include "codec/vectors.h"
 #include "ramcdb/bytes.h"
 
 /// How far predictions missed, three numbers per inner vertex with neighbours, as bytes.

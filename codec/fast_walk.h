@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "codec/fast_plan.h"
-#include "codec/fast_vector.h"
+#include "codec/vectors.h"
 
 namespace ramcdb::codec {
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "codec/vectors.h"
 #include "ramcdb/bytes.h"
 
 /// An adaptive binary range coder: what all blobs of the codec are written with.
@@ -115,6 +116,17 @@ class RangeEncoder {
     return bit;
   }
 
+  /// One of the symbols of `model`, an AdaptiveSymbol; the last one also takes what rounding leaves.
+  template <class Model>
+  std::uint32_t code_symbol(Model& model, std::uint32_t symbol) {
+    const std::uint64_t unit = range_ >> 16, begin = model.begin(symbol), below = unit * begin;
+    range_ = symbol == Model::kSymbols - 1 ? range_ - below : unit * (model.end(symbol) - begin);
+    add(below);
+    model.learn(symbol);
+    if (range_ >> 32 == 0) shift_out();
+    return symbol;
+  }
+
   /// The lower `bits` bits of `value`, unmodelled; 0 <= bits <= 32. REQUIRES: value < 2^bits.
   std::uint32_t code_raw(std::uint32_t value, int bits) {
     if (bits > 16) {
@@ -161,7 +173,7 @@ class RangeDecoder {
     shift_in();
   }
 
-  bool code(AdaptiveBit& model, bool /*ignored*/ = false) {
+  RAMCDB_INLINE bool code(AdaptiveBit& model, bool /*ignored*/ = false) {
     const std::uint64_t part = (range_ >> 16) * model.p_one();
     const bool bit = offset_ < part;
     if (bit) {
@@ -176,6 +188,21 @@ class RangeDecoder {
       range_ <<= 32;
     }
     return bit;
+  }
+
+  template <class Model>
+  RAMCDB_INLINE std::uint32_t code_symbol(Model& model, std::uint32_t /*ignored*/ = 0) {
+    const std::uint64_t unit = range_ >> 16;
+    const std::uint32_t symbol = model.find(static_cast<std::uint32_t>(std::min<std::uint64_t>(offset_ / unit, 65535)));
+    const std::uint64_t begin = model.begin(symbol), below = unit * begin;
+    range_ = symbol == Model::kSymbols - 1 ? range_ - below : unit * (model.end(symbol) - begin);
+    offset_ -= below;
+    model.learn(symbol);
+    if (range_ >> 32 == 0) {
+      shift_in();
+      range_ <<= 32;
+    }
+    return symbol;
   }
 
   std::uint32_t code_raw(std::uint32_t /*ignored*/, int bits) {

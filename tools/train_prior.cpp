@@ -1,17 +1,21 @@
 // ramcdb-train-prior FILE... >codec/built_in_prior.h
 //
-// Counts what the dense coder decides on the charts of some meshes, and fits what its adaptive bits start from: per bit
-// the probability and the strength under which the counts of all charts are likeliest (a beta-binomial distribution: a
-// bit that is alike in all charts starts strong, one that every chart has otherwise starts weak). Bits that were seen
-// little lean on their kin: the same bit in other edge sizes, or other face classes. tools/train-prior chooses meshes.
+// Counts what the dense coder decides on the charts of some meshes, and fits what its models start from: per model the
+// shares and the strength under which the counts of all charts are likeliest (a Dirichlet-multinomial distribution: a
+// model that is alike in all charts starts strong, one that every chart has otherwise starts weak). Models that were
+// seen little lean on their kin: the same one in other activities, or other angles. tools/train-prior chooses meshes.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <iostream>
+#include <memory>
+#include <numeric>
 #include <string>
+#include <type_traits>
 #include <unordered_map>
 #include <vector>
 
@@ -27,10 +31,9 @@ namespace {
 using namespace ramcdb;
 using namespace ramcdb::codec;
 
-struct Count {
-  double zeros = 0, ones = 0;
-};
-/// Per built-in bit its counts, one of each chart that it was decided in.
+/// How often a bit was zero and one, or a symbol each of sixteen.
+using Count = std::array<double, AdaptiveSymbol::kSymbols>;
+/// Per built-in model its counts, one of each chart that it decided in.
 using Counts = std::vector<std::vector<Count>>;
 /// Of charts on coarse lattices and on fine ones, which begin otherwise.
 using BothCounts = std::array<Counts, 2>;
@@ -40,22 +43,25 @@ class CountingCoder {
   static constexpr bool kEncodes = true;
 
   void watch(DenseModels& models) {
-    models.visit_built_in([&](AdaptiveBit& bit) { number_.emplace(&bit, number_.size()); });
+    models.visit_built_in([&](auto& model) { number_.emplace(&model, number_.size()); });
     counts_.resize(number_.size());
   }
-  bool code(AdaptiveBit& model, bool bit) {
-    if (const auto at = number_.find(&model); at != number_.end())
-      ++(bit ? counts_[at->second].ones : counts_[at->second].zeros);
-    return bit;
-  }
+  bool code(AdaptiveBit& model, bool bit) { return count(&model, bit), bit; }
+  std::uint32_t code_symbol(AdaptiveSymbol& model, std::uint32_t symbol) { return count(&model, symbol), symbol; }
   std::uint32_t code_raw(std::uint32_t value, int /*bits*/) { return value; }
   [[nodiscard]] std::uint64_t position() const { return 0; }
   [[nodiscard]] const std::vector<Count>& counts() const { return counts_; }
 
  private:
-  std::unordered_map<const AdaptiveBit*, std::size_t> number_;
+  void count(const void* model, std::uint32_t outcome) {
+    if (const auto at = number_.find(model); at != number_.end()) ++counts_[at->second][outcome];
+  }
+
+  std::unordered_map<const void*, std::size_t> number_;
   std::vector<Count> counts_;
 };
+
+double total(const Count& count) { return std::accumulate(count.begin(), count.end(), 0.0); }
 
 void count_chart(const Chart& chart, const CoderTables& tables, const LatticeBox& range, BothCounts& both) {
   const std::optional<HalfEdges> edges = HalfEdges::of(chart);
@@ -77,7 +83,7 @@ void count_chart(const Chart& chart, const CoderTables& tables, const LatticeBox
   Counts& counts = both[walk.is_fine()];
   counts.resize(coder.counts().size());
   for (std::size_t i = 0; i < counts.size(); ++i)
-    if (coder.counts()[i].zeros + coder.counts()[i].ones > 0) counts[i].push_back(coder.counts()[i]);
+    if (total(coder.counts()[i]) > 0) counts[i].push_back(coder.counts()[i]);
 }
 
 chartify::IndexedMesh on_lattice(const mesh_file::MeshData& data, unsigned bits) {
@@ -114,85 +120,122 @@ void count_mesh(const mesh_file::MeshData& data, unsigned bits, BothCounts& coun
   }
 }
 
-struct Beta {
-  double p = 0.5, strength = 1.6;
+/// What a model begins with: shares of its outcomes, and for how many earlier ones they stand.
+struct Beginning {
+  Count shares{};
+  std::uint16_t earlier = 0;
 };
 
-double log_beta(double a, double b) { return std::lgamma(a) + std::lgamma(b) - std::lgamma(a + b); }
-
-double likelihood(const std::vector<Count>& counts, const Beta& beta) {
-  const double a = beta.p * beta.strength, b = (1 - beta.p) * beta.strength;
+/// Under a Dirichlet distribution of these shares and this strength.
+double likelihood(const std::vector<Count>& counts, const Count& shares, double strength) {
   double sum = 0;
-  for (const Count& c : counts) sum += log_beta(c.ones + a, c.zeros + b) - log_beta(a, b);
+  for (const Count& count : counts) {
+    sum += std::lgamma(strength) - std::lgamma(strength + total(count));
+    for (std::size_t i = 0; i < count.size(); ++i)
+      if (count[i] > 0) sum += std::lgamma(shares[i] * strength + count[i]) - std::lgamma(shares[i] * strength);
+  }
   return sum;
 }
 
+/// Shares nearer to the likeliest ones (T. Minka, "Estimating a Dirichlet distribution"); `kin` has a say, too.
+Count improved(const Count& shares, const std::vector<Count>& counts, const Count& kin, double lean, double strength) {
+  Count better{};
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    better[i] = lean * kin[i];
+    const double own = shares[i] * strength;
+    for (const Count& count : counts)
+      for (double j = 0; j < count[i]; ++j) better[i] += own / (own + j);
+  }
+  const double sum = total(better);
+  for (double& share : better) share /= sum;
+  return better;
+}
+
 /// The likeliest beginning, of the strengths that there are.
-Beta fit(const std::vector<Count>& counts) {
-  Beta best;
+Beginning fit(const std::vector<Count>& counts, const Count& kin, double lean) {
+  Beginning best;
   double most = -1e300;
-  for (const std::uint16_t bits : kPriorBits) {
-    double lo = -7, hi = 7;  // logit of p, by golden section
-    const auto at = [&](double x) { return likelihood(counts, {1 / (1 + std::exp(-x)), bits + 1.6}); };
-    constexpr double kGolden = 0.6180339887498949;
-    while (hi - lo > 0.01) {
-      const double left = hi - kGolden * (hi - lo), right = lo + kGolden * (hi - lo);
-      (at(left) > at(right) ? hi : lo) = at(left) > at(right) ? right : left;
-    }
-    if (const double found = at((lo + hi) / 2); found > most)
-      most = found, best = {1 / (1 + std::exp(-(lo + hi) / 2)), bits + 1.6};
+  for (const std::uint16_t earlier : kPriorBits) {
+    const double strength = earlier + 1.6;
+    Count shares = kin;
+    for (int round = 0; round < 12; ++round) shares = improved(shares, counts, kin, lean, strength);
+    if (const double found = likelihood(counts, shares, strength); found > most) most = found, best = {shares, earlier};
   }
   return best;
 }
 
-std::uint16_t packed(const Beta& beta) {
-  const auto p = std::clamp(std::lround(beta.p * 65536), 48L, 65488L) & 0xfff8;
-  const auto strength = std::find_if(kPriorBits.begin(), kPriorBits.end(),
-                                     [&](std::uint16_t bits) { return bits + 1.6 >= beta.strength; });
+std::uint16_t packed_bit(const Beginning& beginning) {
+  const auto p = std::clamp(std::lround(beginning.shares[1] * 65536), 48L, 65488L) & 0xfff8;
+  const auto strength = std::find(kPriorBits.begin(), kPriorBits.end(), beginning.earlier);
   return static_cast<std::uint16_t>(p | (strength - kPriorBits.begin()));
 }
 
-/// Which bits are kin: they lean on each other where little was seen. One number per built-in bit.
-std::vector<std::size_t> kin() {
-  DenseModels models = DenseModels::built_in(false);
-  std::vector<std::size_t> kin;
-  std::size_t fan = 0, misses = 0, joins = 0;
-  models.fan_size.visit_built_in([&](AdaptiveBit&) { ++fan; });
-  models.misses[0].visit_built_in([&](AdaptiveBit&) { ++misses; });
-  for (const auto& bits : models.join) joins += bits.size();
-  const std::size_t per_angle = fan / 40, per_faces = per_angle / 10;
-  for (std::size_t i = 0; i < fan; ++i) kin.push_back(i / per_angle * per_faces + i % per_faces);
-  for (std::size_t i = 0; i < joins; ++i) kin.push_back(fan + i);
-  for (std::size_t m = 0; m < models.misses.size(); ++m)
-    for (std::size_t i = 0; i < misses; ++i) kin.push_back(fan + joins + m / DenseModels::kEdgeSizes * misses + i);
-  return kin;
+AdaptiveSymbol::Lanes packed_symbol(const Beginning& beginning) {
+  constexpr double kLeast = 8, kRest = 65536 - 16 * kLeast;
+  AdaptiveSymbol::Lanes lanes{};
+  double limit = 0;
+  for (std::size_t i = 0; i < 15; ++i) {
+    limit += kLeast + std::floor(kRest * beginning.shares[i]);
+    lanes[i] = static_cast<std::uint16_t>(limit);
+  }
+  lanes[15] = beginning.earlier;
+  return lanes;
 }
 
-std::vector<std::uint16_t> fit_all(const Counts& counts) {
-  const std::vector<std::size_t> kin_of = kin();
+/// All built-in models in their order: how many outcomes each has, and which are kin, which lean on each other where
+/// little was seen.
+struct Kind {
+  std::size_t outcomes = 0, kin = 0;
+};
+std::vector<Kind> kinds() {
+  const auto models = std::make_unique<DenseModels>(DenseModels::built_in(false));
+  std::vector<Kind> kinds;
+  std::size_t fan = 0, bits = 0;
+  models->fan_size.visit_built_in([&](AdaptiveBit&) { ++fan; });
+  const std::size_t per_angle = fan / 40, per_faces = per_angle / 10;
+  const auto add_bit = [&] {
+    const std::size_t i = bits++;  // of a fan size's, that in other angles; of joins none
+    kinds.push_back({2, i < fan ? i / per_angle * per_faces + i % per_faces : i});
+  };
+  std::size_t symbols = 0;
+  const auto add_symbol = [&] {  // of misses that in other activities
+    kinds.push_back({AdaptiveSymbol::kSymbols, (std::size_t{1} << 20) + symbols++ / MissModels::kActivities});
+  };
+  models->visit_built_in([&](auto& model) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(model)>, AdaptiveBit>)
+      add_bit();
+    else
+      add_symbol();
+  });
+  return kinds;
+}
+
+std::vector<Beginning> fit_all(const Counts& counts) {
+  const std::vector<Kind> kind_of = kinds();
   std::unordered_map<std::size_t, std::vector<Count>> of_kin;
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    auto& all = of_kin[kin_of[i]];
+    auto& all = of_kin[kind_of[i].kin];
     all.insert(all.end(), counts[i].begin(), counts[i].end());
   }
-  std::unordered_map<std::size_t, Beta> kin_beta;
-  for (const auto& [number, all] : of_kin)
-    if (!all.empty()) kin_beta[number] = fit(all);
-  std::vector<std::uint16_t> prior;
+  std::vector<Beginning> beginnings;
+  std::unordered_map<std::size_t, Beginning> of_all_kin;
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    std::vector<Count> own = counts[i];
-    const Beta beta = kin_beta.contains(kin_of[i]) ? kin_beta.at(kin_of[i]) : Beta{};
+    const auto [number, fresh] = of_all_kin.try_emplace(kind_of[i].kin);
+    Beginning& kin = number->second;
+    if (fresh) {
+      Count even{};
+      for (std::size_t k = 0; k < kind_of[i].outcomes; ++k) even[k] = 1 / static_cast<double>(kind_of[i].outcomes);
+      kin = fit(of_kin[kind_of[i].kin], even, 1);
+    }
     constexpr double kLean = 4;
-    own.push_back({kLean * (1 - beta.p), kLean * beta.p});
-    prior.push_back(packed(counts[i].size() < 2 ? beta : fit(own)));
+    beginnings.push_back(counts[i].size() < 2 ? kin : fit(counts[i], kin.shares, kLean));
   }
-  return prior;
+  return beginnings;
 }
 
-void print(const std::vector<std::uint16_t>& prior) {
+void print(const std::vector<std::uint16_t>& numbers) {
   std::string line = "    ";
-  fmt::print("    {{\n");
-  for (const std::uint16_t x : prior) {
+  for (const std::uint16_t x : numbers) {
     const std::string next = fmt::format("{},", x);
     if (line.size() + next.size() > 119) {
       fmt::print("{}\n", line);
@@ -200,25 +243,40 @@ void print(const std::vector<std::uint16_t>& prior) {
     }
     line += next;
   }
-  fmt::print("{}\n    }},\n", line);
+  fmt::print("{}\n", line);
 }
 
-void print(const BothCounts& counts) {
+void print(const std::array<std::vector<Beginning>, 2>& both, std::size_t bits) {
   fmt::print(R"(#pragma once
 
 #include <array>
 #include <cstdint>
 
-/// What the adaptive bits of the dense coder start from, in the order of DenseModels::visit_built_in: probability and
-/// strength, as built_in_bit() reads them; for coarse lattices, then for fine ones. Part of the format, never to
-/// change. Written by tools/train-prior, which says from what and how.
+/// What the models of the dense coder start from, in the order of DenseModels::visit_built_in: probability and strength
+/// of bits, as built_in_bit() reads them, and the lanes of AdaptiveSymbols; for coarse lattices, then for fine ones.
+/// Part of the format, never to change. Written by tools/train-prior, which says from what and how.
 namespace ramcdb::codec {{
 
 // clang-format off
-inline constexpr std::array<std::array<std::uint16_t, {}>, 2> kBuiltInPrior{{{{
+inline constexpr std::array<std::array<std::uint16_t, {}>, 2> kBuiltInBits{{{{
 )",
-             counts[0].size());
-  for (const Counts& of_some : counts) print(fit_all(of_some));
+             bits);
+  for (const auto& beginnings : both) {
+    std::vector<std::uint16_t> numbers;
+    for (std::size_t i = 0; i < bits; ++i) numbers.push_back(packed_bit(beginnings[i]));
+    fmt::print("    {{\n");
+    print(numbers);
+    fmt::print("    }},\n");
+  }
+  fmt::print(
+      "}}}};\n\ninline constexpr std::array<std::array<std::array<std::uint16_t, 16>, {}>, 2> kBuiltInSymbols{{{{\n",
+      both[0].size() - bits);
+  for (const auto& beginnings : both) {
+    fmt::print("    {{{{\n");
+    for (std::size_t i = bits; i < beginnings.size(); ++i)
+      fmt::print("    {{{}}},\n", fmt::join(packed_symbol(beginnings[i]), ","));
+    fmt::print("    }}}},\n");
+  }
   fmt::print("}}}};\n// clang-format on\n\n}}  // namespace ramcdb::codec\n");
 }
 
@@ -233,7 +291,7 @@ int main(int argc, char** argv) try {
   }
   if (counts[0].empty() || counts[1].empty())
     throw std::runtime_error("usage: ramcdb-train-prior FILE... >codec/built_in_prior.h");
-  print(counts);
+  print({fit_all(counts[0]), fit_all(counts[1])}, kBuiltInBits[0].size());
   return 0;
 } catch (const std::exception& error) {
   std::cerr << "ramcdb-train-prior: " << error.what() << '\n';

@@ -20,8 +20,6 @@
 namespace ramcdb::benchmark {
 namespace {
 
-constexpr std::uint64_t kBlobOverhead = 8;
-
 struct ProfileName {
   codec::Profile profile;
   ChartProfile wanted;

@@ -9,11 +9,10 @@
 #include "api/mesh_encoder.h"
 #include "chartify/partition.h"
 #include "codec/page_codec.h"
+#include "tools/benchmark/peer.h"
 
 namespace ramcdb::benchmark {
 namespace {
-
-constexpr std::uint64_t kBlobOverhead = 8;
 
 /// Positions and triangles alone, snapped to a lattice of so many bits along the largest extent.
 mesh_file::MeshData read_snapped(const std::filesystem::path& file, unsigned bits, std::vector<LatticePoint>& points) {

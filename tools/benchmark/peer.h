@@ -9,6 +9,9 @@
 
 namespace ramcdb::benchmark {
 
+/// What the store adds to a blob, which is counted with it.
+inline constexpr std::uint64_t kBlobOverhead = 8;
+
 /// Another coder, given a whole mesh on the lattice: all contestants code the same numbers.
 class Peer {
  public:
