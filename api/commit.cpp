@@ -334,8 +334,11 @@ CommitReport commit_edit(const PendingEdit& edit, const CommitOptions& options, 
           report.conflicts = common(charts_other_than(edit.parts, tip.pages(), {}), edit.changes.touched);
           auto encoded =
               report.conflicts.empty() ? encode_on(tip, edit, options.threads) : merge_on(tip, edit, options, report);
-          if (encoded) encoded->merged_version = second_parent;
-          return encoded;
+          if (!encoded) return encoded;
+          encoded->merged_version = second_parent;
+          report.nothing_changed = encoded->pages.empty() && !second_parent;
+          report.revision = report.parent = tip.version();
+          return report.nothing_changed ? std::nullopt : std::move(encoded);
         },
         report);
   }

@@ -131,22 +131,19 @@ std::optional<FileFrame> find_frame(const RegionMesh& region, const Lattice& lat
                                     std::span<const Point> positions, double tolerance) {
   constexpr std::size_t kSample = 200, kLargeSample = 5000, kFew = 8;
   constexpr double kNearlyAll = 0.9, kHalf = 0.5;
-  const auto any = [](std::uint32_t) { return true; };
-  std::vector<Point> targets =
+  const std::vector<Point> targets =
       sample(region, lattice, local_origin, kSample, [&](std::uint32_t v) { return bool{region.outer_border[v]}; });
-  const bool has_border = targets.size() >= kFew;
-  if (!has_border) targets = sample(region, lattice, local_origin, kSample, any);
-  const double least = has_border ? kNearlyAll : kHalf;
   const FrameSearch search(positions, std::max(tolerance, lattice.step / 2));
   const FileFrame as_it_stands({0, 1, 2}, {1, 1, 1}, 1, 1);
   if (targets.size() < kFew || search.share(as_it_stands, targets, kHalf) > 0) return std::nullopt;
 
   std::vector<FileFrame> found;
   for (const FileFrame& frame : all_frames())
-    if (!frame.changes_nothing() && search.share(frame, targets, least) > 0) found.push_back(frame);
+    if (!frame.changes_nothing() && search.share(frame, targets, kNearlyAll) > 0) found.push_back(frame);
   if (found.size() == 1) return found.front();
   // A symmetric border fits in several ways, but its inside as a rule does not.
-  const std::vector<Point> vertices = sample(region, lattice, local_origin, kLargeSample, any);
+  const std::vector<Point> vertices =
+      sample(region, lattice, local_origin, kLargeSample, [](std::uint32_t) { return true; });
   std::erase_if(found, [&](const FileFrame& frame) { return search.share(frame, vertices, kNearlyAll) == 0; });
   return found.size() == 1 ? std::optional(found.front()) : std::nullopt;
 }

@@ -30,9 +30,9 @@ class FileFrame {
   double numerator_, denominator_;
 };
 
-/// Tries 24 rotations and the scales between common units, where less than half of the region's outer border (without
-/// one, of its vertices) is in the file. One is found when it alone brings back nearly all of the border (half of the
-/// vertices).
+/// Tries 24 rotations and the scales between common units, where less than half of the region's outer border is in the
+/// file. One is found when it alone brings back nearly all of the border. A region without such a border may have been
+/// turned on purpose: it is taken as it is.
 /// \param positions as the file has them, relative to `local_origin`
 /// \param tolerance model units, beside half a lattice step
 [[nodiscard]] std::optional<FileFrame> find_frame(const RegionMesh& region, const Lattice& lattice,

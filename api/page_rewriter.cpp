@@ -94,6 +94,8 @@ class Rewriter {
   }
 
   PageEntry run() {
+    const db::MeshRoot& before = tip_.root();
+    if (delta_.empty()) return {before.root_page, before.root_version, {}, 0, {}};
     std::vector<NewPage> pages = rewrite(tip_.root().root_page, tip_.root().root_version, 0);
     if (pages.size() == 1 && std::holds_alternative<InnerPage>(pages.front().page) && size_of(pages.front().page) == 1)
       return std::get<InnerPage>(pages.front().page).pages.front();  // the tree gets lower
