@@ -1,107 +1,103 @@
 #include <algorithm>
-#include <cmath>
+#include <deque>
 
+#include "api/change_figures.h"
 #include "api/commit.h"
 
 namespace ramcdb::detail {
 namespace {
 
-double distance(const VertexMove& move) {
-  double sum = 0;
-  for (int a = 0; a < 3; ++a) sum += (move.target[a] - move.position[a]) * (move.target[a] - move.position[a]);
-  return std::sqrt(sum);
-}
-
-/// Which charts of a region a vertex stands in is known by its faces, and of isolated ones by their keys.
-class ChartChanges {
+/// The charts that an edit's faces count in: new faces in that of the faces which they replace, or else in that of the
+/// faces beside them.
+class ChartsOfEdit {
  public:
-  explicit ChartChanges(const PendingEdit& edit) : edit_(edit), region_(edit.region) {}
+  explicit ChartsOfEdit(const PendingEdit& edit)
+      : edit_(edit),
+        region_(edit.region),
+        mesh_(edit.edited.mesh),
+        chart_at_(mesh_.points.size(), kNew),
+        chart_of_(mesh_.faces.size(), kNew) {}
 
-  std::vector<ChangeReport::ChartChange> run() {
-    for (const ChartId id : region_.charts) changes_.push_back({id});
-    count_moves();
-    count_values();
-    for (ChangeReport::ChartChange& change : changes_) change.remeshed = edit_.changes.recut.contains(change.chart);
-    std::erase_if(changes_, [](const ChangeReport::ChartChange& c) {
-      return c.vertices_moved == 0 && c.values_changed == 0 && !c.remeshed;
-    });
-    return std::move(changes_);
+  FaceCharts run() {
+    take_old_faces();
+    take_vertices();
+    spread();
+    FaceCharts charts;
+    for (const std::uint32_t chart : region_.chart_of_face) charts.before.push_back(region_.charts[chart]);
+    for (const std::uint32_t chart : chart_of_)
+      charts.after.push_back(chart == kNew ? leftover() : region_.charts[chart]);
+    return charts;
   }
 
  private:
-  [[nodiscard]] ChangeReport::ChartChange& chart(ChartId id) {
-    return changes_[static_cast<std::size_t>(std::ranges::lower_bound(region_.charts, id) - region_.charts.begin())];
+  void take_old_faces() {
+    const std::vector<std::uint32_t>& source = edit_.edited.face_source;
+    for (std::uint32_t f = 0; f < source.size(); ++f)
+      if (source[f] != kNew) chart_of_[f] = region_.chart_of_face[source[f]];
   }
 
-  /// Calls `visit` for each chart and vertex in it that is marked, once.
-  template <class Visit>
-  void for_charts_of(const std::vector<bool>& marked, Visit&& visit) {
-    std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
-    for (std::size_t f = 0; f < region_.faces.size(); ++f)
+  void take_vertices() {
+    std::vector<std::uint32_t> of_region(region_.points.size(), kNew);
+    const auto take = [&](std::uint32_t f) {
       for (const std::uint32_t v : region_.faces[f])
-        if (marked[v] && seen.insert({region_.chart_of_face[f], v}).second)
-          visit(changes_[region_.chart_of_face[f]], v);
-    for (std::uint32_t v = 0; v < region_.keys.size(); ++v) {
-      if (!marked[v] || region_.keys[v].where != VertexKey::Where::chart) continue;
-      ChangeReport::ChartChange& of = chart(ChartId(region_.keys[v].id));
-      const auto position = static_cast<std::uint32_t>(&of - changes_.data());
-      if (seen.insert({position, v}).second) visit(of, v);
+        if (of_region[v] == kNew) of_region[v] = region_.chart_of_face[f];
+    };
+    for (const std::uint32_t f : edit_.changes.faces_gone) take(f);
+    for (std::uint32_t f = 0; f < region_.faces.size(); ++f)
+      if (edit_.changes.recut.contains(region_.charts[region_.chart_of_face[f]])) take(f);
+    for (std::uint32_t v = 0; v < chart_at_.size(); ++v)
+      if (const std::uint32_t source = edit_.edited.vertex_source[v]; source != kNew) chart_at_[v] = of_region[source];
+  }
+
+  /// From vertices whose chart is known over the new faces.
+  void spread() {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> faces_at;
+    for (const std::uint32_t f : edit_.changes.faces_new)
+      for (const std::uint32_t v : mesh_.faces[f]) faces_at.emplace_back(v, f);
+    std::ranges::sort(faces_at);
+    std::deque<std::uint32_t> known;
+    for (const auto& [v, f] : faces_at)
+      if (chart_at_[v] != kNew && (known.empty() || known.back() != v)) known.push_back(v);
+    for (; !known.empty(); known.pop_front()) {
+      const std::uint32_t chart = chart_at_[known.front()];
+      auto at = std::ranges::lower_bound(faces_at, std::pair(known.front(), 0U));
+      for (; at != faces_at.end() && at->first == known.front(); ++at) {
+        if (chart_of_[at->second] != kNew) continue;
+        chart_of_[at->second] = chart;
+        for (const std::uint32_t v : mesh_.faces[at->second])
+          if (chart_at_[v] == kNew) {
+            chart_at_[v] = chart;
+            known.push_back(v);
+          }
+      }
     }
   }
 
-  void count_moves() {
-    std::vector<bool> moved(region_.points.size(), false);
-    std::vector<double> by(region_.points.size(), 0);
-    for (const VertexMove& move : edit_.changes.moves) {
-      moved[move.vertex] = true;
-      by[move.vertex] = distance(move);
-    }
-    if (edit_.changes.moves.empty()) return;
-    for_charts_of(moved, [&](ChangeReport::ChartChange& of, std::uint32_t v) {
-      ++of.vertices_moved;
-      of.max_displacement = std::max(of.max_displacement, by[v]);
-    });
-  }
-
-  /// Those of shared vertices count in every chart of the region.
-  void count_values() {
-    for (const LayerEdit& layer : edit_.changes.layers) {
-      for (const auto& [id, values] : layer.in_charts) chart(id).values_changed += values.size();
-      if (layer.at_vertices.empty()) continue;
-      std::vector<bool> changed(region_.points.size(), false);
-      for (std::uint32_t v = 0; v < changed.size(); ++v)
-        changed[v] = layer.at_vertices.contains(region_.keys[v].packed());
-      for_charts_of(changed, [](ChangeReport::ChartChange& of, std::uint32_t) { ++of.values_changed; });
-    }
+  /// Of a new component.
+  [[nodiscard]] ChartId leftover() const {
+    return edit_.changes.recut.empty() ? region_.charts.front() : *edit_.changes.recut.begin();
   }
 
   const PendingEdit& edit_;
   const RegionMesh& region_;
-  std::vector<ChangeReport::ChartChange> changes_;
+  const RegionMesh& mesh_;
+  std::vector<std::uint32_t> chart_at_, chart_of_;  ///< positions in the region's charts
 };
 
 }  // namespace
 
 ChangeReport describe_edit(const PendingEdit& edit) {
-  const ChangeSet& changes = edit.changes;
   ChangeReport report;
   report.notes = edit.notes;
-  double squares = 0;
-  for (const VertexMove& move : changes.moves) {
-    const double d = distance(move);
-    report.max_displacement = std::max(report.max_displacement, d);
-    squares += d * d;
+  if (edit.parts.empty() || edit.region.charts.empty()) return report;
+  MeasuredChange measured =
+      measure_change(edit.base(), edit.region, edit.edited, edit.changes, ChartsOfEdit(edit).run());
+  static_cast<ChangeFigures&>(report) = measured.total;
+  for (const VertexMove& move : edit.changes.moves)
     report.border_vertices_moved += edit.region.outer_border[move.vertex];
-  }
-  report.vertices_moved = changes.moves.size();
-  if (!changes.moves.empty()) report.rms_displacement = std::sqrt(squares / static_cast<double>(changes.moves.size()));
-  report.vertices_added = changes.vertices_new.size();
-  report.vertices_removed = changes.vertices_gone.size();
-  report.faces_added = changes.faces_new.size();
-  report.faces_removed = changes.faces_gone.size();
-  for (const LayerEdit& layer : changes.layers) report.values_changed += layer.count();
-  report.per_chart = ChartChanges(edit).run();
-  for (const ChangeReport::ChartChange& change : report.per_chart) report.charts_touched.push_back(change.chart);
+  for (ChartChange& change : measured.per_chart)
+    if (!change.clean() || edit.changes.touched.contains(change.chart)) report.per_chart.push_back(change);
+  for (const ChartChange& change : report.per_chart) report.charts_touched.push_back(change.chart);
   return report;
 }
 

@@ -59,14 +59,18 @@ class Comparison {
   Comparison(const Snapshot::Impl& at, const RegionMesh& region, const EditedRegion& edited)
       : at_(at), region_(region), edited_(edited) {}
 
-  ChangeSet run() {
+  void find_differences() {
     find_vertices();
     find_faces();
-    if (set_.connectivity()) find_recut();
     set_.layers = changed_values(region_, at_.layers(), attributes_in_region(edited_, region_));
-    find_touched();
-    return std::move(set_);
   }
+
+  void find_charts() {
+    if (set_.connectivity()) find_recut();
+    find_touched();
+  }
+
+  [[nodiscard]] ChangeSet take() { return std::move(set_); }
 
  private:
   void find_vertices() {
@@ -226,8 +230,17 @@ std::optional<VertexMove> move_to(const Snapshot::Impl& at, const RegionMesh& re
   return move;
 }
 
+ChangeSet differences_of(const Snapshot::Impl& at, const RegionMesh& region, const EditedRegion& edited) {
+  Comparison comparison(at, region, edited);
+  comparison.find_differences();
+  return comparison.take();
+}
+
 ChangeSet changes_of(const Snapshot::Impl& at, const RegionMesh& region, const EditedRegion& edited) {
-  return Comparison(at, region, edited).run();
+  Comparison comparison(at, region, edited);
+  comparison.find_differences();
+  comparison.find_charts();
+  return comparison.take();
 }
 
 }  // namespace ramcdb::detail

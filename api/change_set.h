@@ -44,6 +44,9 @@ struct ChangeSet {
   }
 };
 
+/// What an edit changes, without `recut` and `touched`.
+[[nodiscard]] ChangeSet differences_of(const Snapshot::Impl& at, const RegionMesh& region, const EditedRegion& edited);
+
 /// Compares an edit with its region. Throws invalid_argument, naming places, where the number of faces changes at an
 /// edge that charts outside the region share: these would be torn.
 /// \param at a version that has the region or a part of it

@@ -14,14 +14,16 @@ struct PageFront {
   std::set<PageKey> pages = {};
   std::map<ChartId, ChartState> charts = {};  ///< of leaves that the other version does not share
 
-  explicit PageFront(const PageIndex& tree) : index(tree) {
+  ReadCost* cost;
+
+  PageFront(const PageIndex& tree, ReadCost* read) : index(tree), cost(read) {
     pages.insert({tree.root().root_page, tree.root().root_version});
   }
 
   void open_all() {
     std::set<PageKey> below;
     for (const auto& [id, version] : pages) {
-      const auto loaded = index.page(id, version);
+      const auto loaded = index.page(id, version, cost);
       if (const auto* inner = std::get_if<InnerPage>(&*loaded.page))
         for (const PageEntry& e : inner->pages) below.insert({e.id, e.version});
       else
@@ -41,8 +43,8 @@ void drop_shared(PageFront& a, PageFront& b) {
 
 }  // namespace
 
-ChartDifference chart_difference(const PageIndex& from, const PageIndex& to) {
-  PageFront a(from), b(to);
+ChartDifference chart_difference(const PageIndex& from, const PageIndex& to, ReadCost* cost) {
+  PageFront a(from, cost), b(to, cost);
   for (drop_shared(a, b); !a.pages.empty() || !b.pages.empty(); drop_shared(a, b)) {
     a.open_all();
     b.open_all();

@@ -13,6 +13,6 @@ struct ChartDifference {
 };
 
 /// Walks both trees of index pages and skips what they share: the cost follows the difference.
-[[nodiscard]] ChartDifference chart_difference(const PageIndex& from, const PageIndex& to);
+[[nodiscard]] ChartDifference chart_difference(const PageIndex& from, const PageIndex& to, ReadCost* cost = nullptr);
 
 }  // namespace ramcdb::detail

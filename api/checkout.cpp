@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "api/commit.h"
+#include "api/heatmap.h"
 #include "api/locks.h"
 #include "api/region_file.h"
 #include "api/sidecar.h"
@@ -165,9 +166,12 @@ CheckoutReport export_mesh(const Snapshot& snapshot, const std::filesystem::path
   return report;
 }
 
-ChangeReport status_of_file(const std::shared_ptr<db::Store>& store, const std::filesystem::path& file) {
+ChangeReport status_of_file(const std::shared_ptr<db::Store>& store, const std::filesystem::path& file,
+                            const std::filesystem::path& heatmap) {
+  if (!heatmap.empty()) require_heatmap_file(heatmap);
   const EditedFile edited = read_edited_file(store, file);
   ChangeReport report = describe_edit(edited.edit);
+  if (!heatmap.empty()) write_heatmap(edited.edit.base(), heat_of_edit(edited.edit), report.max_displacement, heatmap);
   compare_with_tip(report, edited.edit.parts, "main");
   return report;
 }

@@ -17,7 +17,8 @@ CheckoutReport checkout_region(db::Store& store, const std::filesystem::path& re
 /// Whole mesh -> file: see Repository::export_mesh.
 CheckoutReport export_mesh(const Snapshot& snapshot, const std::filesystem::path& file, const FileOptions& options);
 
-[[nodiscard]] ChangeReport status_of_file(const std::shared_ptr<db::Store>& store, const std::filesystem::path& file);
+[[nodiscard]] ChangeReport status_of_file(const std::shared_ptr<db::Store>& store, const std::filesystem::path& file,
+                                          const std::filesystem::path& heatmap = {});
 
 CommitReport commit_file(const std::shared_ptr<db::Store>& store, const std::filesystem::path& file,
                          const CommitOptions& options);

@@ -3,140 +3,146 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <map>
-#include <set>
 
-#include "api/chart_loader.h"
-#include "api/face_matching.h"
+#include "api/change_figures.h"
+#include "api/chart_difference.h"
+#include "api/heatmap.h"
+#include "api/region_query.h"
+#include "api/version_edit.h"
 #include "ramcdb/error.h"
 
 namespace ramcdb::detail {
 namespace {
 
-using PageKey = std::pair<PageId, VersionId>;
-
-/// Pages of one level of a tree, and the leaves found on the way.
-struct Frontier {
-  const PageIndex& index;
-  std::set<PageKey> pages;
-  std::map<ChartId, ChartState> charts;  ///< of leaves that the other version does not share
-
-  void open_all() {
-    std::set<PageKey> below;
-    for (const auto& [id, version] : pages) {
-      const auto loaded = index.page(id, version);
-      if (const auto* inner = std::get_if<InnerPage>(&*loaded.page))
-        for (const PageEntry& e : inner->pages) below.insert({e.id, e.version});
-      else
-        for (const PageChart& c : std::get<LeafPage>(*loaded.page).charts) charts.emplace(c.id, state_of(c));
-    }
-    pages = std::move(below);
-  }
-};
-
-void drop_equal(std::set<PageKey>& a, std::set<PageKey>& b) {
-  std::set<PageKey> only_a, only_b;
-  std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::inserter(only_a, only_a.end()));
-  std::set_difference(b.begin(), b.end(), a.begin(), a.end(), std::inserter(only_b, only_b.end()));
-  a = std::move(only_a);
-  b = std::move(only_b);
+std::vector<ChartId> united(std::vector<ChartId> a, const std::vector<ChartId>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  std::ranges::sort(a);
+  return a;
 }
 
-/// Sums up displacements over vertices, each counted once though several charts share it.
-class Displacements {
+/// What differs between two versions: these charts of the first one, of the second one, and these as an edit of those.
+class VersionComparison {
  public:
-  /// Returns the displacement.
-  double add(const VertexKey& key, const Point& from, const Point& to) {
-    double sum = 0;
-    for (int a = 0; a < 3; ++a) sum += (to[a] - from[a]) * (to[a] - from[a]);
-    if (seen_.insert(key.packed()).second) squares_ += sum;
-    return std::sqrt(sum);
+  VersionComparison(const Snapshot::Impl& from, const Snapshot::Impl& to, const ChartDifference& charts,
+                    unsigned threads, ReadCost& cost)
+      : from_(from), to_(to) {
+    std::vector<ChartId> before = united(charts.changed, charts.removed), after = united(charts.changed, charts.added);
+    if (before.empty()) {  // there is no region of no chart: one that both have stands in
+      before = {from.pages().all_charts().front()};
+      after = united(after, before);
+    }
+    before_ = load(from, before, threads, cost);
+    after_ = load(to, after, threads, cost);
+    edited_ = mesh_as_edit(from, before_, after_);
+    changes_ = differences_of(from, before_, edited_);
+    drop_shared_with_outside();
   }
-  [[nodiscard]] std::uint64_t count() const { return seen_.size(); }
-  [[nodiscard]] double rms() const {
-    return seen_.empty() ? 0 : std::sqrt(squares_ / static_cast<double>(seen_.size()));
+
+  [[nodiscard]] MeasuredChange measure() const {
+    return measure_change(from_, before_, edited_, changes_, face_charts());
+  }
+
+  [[nodiscard]] Heat heat() && {
+    Heat heat{std::move(after_), displacements_of(edited_, changes_), {}};
+    heat.is_new.assign(heat.mesh.faces.size(), false);
+    for (const std::uint32_t f : changes_.faces_new) heat.is_new[f] = true;
+    return heat;
   }
 
  private:
-  double squares_ = 0;
-  std::set<std::uint64_t> seen_;
+  static RegionMesh load(const Snapshot::Impl& at, const std::vector<ChartId>& charts, unsigned threads,
+                         ReadCost& cost) {
+    const RegionPart part{&at, charts};
+    return load_region(std::span(&part, 1), threads, &cost, true);
+  }
+
+  /// A vertex that charts have which do not differ was there and is there.
+  void drop_shared_with_outside() {
+    std::erase_if(changes_.vertices_gone, [&](std::uint32_t v) { return is_outside(from_, before_, v); });
+    std::erase_if(changes_.vertices_new, [&](std::uint32_t v) { return is_outside(to_, after_, v); });
+  }
+
+  static bool is_outside(const Snapshot::Impl& at, const RegionMesh& region, std::uint32_t v) {
+    if (region.outer_border[v]) return true;
+    if (region.keys[v].where != VertexKey::Where::corner) return false;
+    const std::set<ChartId> around = charts_at_corner(at, CornerId(region.keys[v].id), region.points[v]);
+    return !std::ranges::all_of(around, [&](ChartId id) { return std::ranges::binary_search(region.charts, id); });
+  }
+
+  [[nodiscard]] FaceCharts face_charts() const {
+    FaceCharts charts;
+    for (const std::uint32_t chart : before_.chart_of_face) charts.before.push_back(before_.charts[chart]);
+    for (std::uint32_t f = 0; f < after_.faces.size(); ++f) {
+      charts.after.push_back(after_.charts[after_.chart_of_face[f]]);
+      if (edited_.face_source[f] != kNew) charts.before[edited_.face_source[f]] = charts.after.back();
+    }
+    return charts;
+  }
+
+  const Snapshot::Impl& from_;
+  const Snapshot::Impl& to_;
+  RegionMesh before_, after_;
+  EditedRegion edited_;
+  ChangeSet changes_;
 };
 
-/// Positions in model units: of a lossless mesh to the last bit.
-std::vector<Point> positions_of(const LoadedChart& loaded, const Lattice& lattice) {
-  if (!loaded.exact.empty()) return loaded.exact;
-  std::vector<Point> positions;
-  for (const LatticePoint p : loaded.chart.positions) positions.push_back(lattice.position(p));
-  return positions;
-}
-
-/// The new position of every vertex of a chart; empty when the two do not have the same connectivity. Border vertices
-/// are told apart by their keys, inner ones by the faces around them, for re-encoding renumbers them.
-std::vector<Point> targets_of(const LoadedChart& a, const LoadedChart& b, const Lattice& lattice) {
-  if (a.chart.faces.size() != b.chart.faces.size() || a.chart.positions.size() != b.chart.positions.size()) return {};
-  const TriangleCorners faces_a(a.chart.faces), faces_b(b.chart.faces);
-  const Matching matching = match_faces(faces_a.over(a.chart.positions), faces_b.over(b.chart.positions));
-  if (matching.unmatched) return {};
-  const std::vector<Point> there = positions_of(b, lattice);
-  std::vector<Point> to = positions_of(a, lattice);
-  std::vector<bool> known(to.size(), false);
-  for (std::size_t f = 0; f < a.chart.faces.size(); ++f)
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      const std::uint32_t v = a.chart.faces[f][i];
-      const FaceMatch m = matching.matches[f];
-      const Point& p = there[b.chart.faces[m.face][(i + m.turn) % 3]];
-      if (known[v] && to[v] != p) return {};
-      to[v] = p;
-      known[v] = true;
-    }
-  return to;
-}
-
-void compare_charts(const LoadedChart& a, const LoadedChart& b, const Lattice& lattice, Displacements& sum,
-                    DiffReport& report) {
-  ChangeReport::ChartChange change{a.entry.id, 0, 0};
-  const std::vector<Point> from = positions_of(a, lattice), to = targets_of(a, b, lattice);
-  std::set<std::uint64_t> counted;
-  for (std::size_t v = 0; v < to.size(); ++v) {
-    if (to[v] == from[v]) continue;
-    change.vertices_moved += counted.insert(a.keys[v].packed()).second;
-    change.max_displacement = std::max(change.max_displacement, sum.add(a.keys[v], from[v], to[v]));
+/// The same over all charts of the newer version.
+Heat over_all(const Snapshot::Impl& at, const Heat& changed, unsigned threads) {
+  const RegionPart part{&at, at.pages().all_charts()};
+  Heat heat{load_region(std::span(&part, 1), threads), {}, {}};
+  std::unordered_map<std::uint64_t, double> by;
+  for (std::size_t v = 0; v < changed.displacement.size(); ++v)
+    if (changed.displacement[v] > 0) by.emplace(changed.mesh.keys[v].packed(), changed.displacement[v]);
+  for (const VertexKey& key : heat.mesh.keys) {
+    const auto it = by.find(key.packed());
+    heat.displacement.push_back(it == by.end() ? 0 : it->second);
   }
-  report.max_displacement = std::max(report.max_displacement, change.max_displacement);
-  report.per_chart.push_back(change);
+  heat.is_new.assign(heat.mesh.faces.size(), false);
+  for (std::size_t f = 0, g = 0; f < changed.mesh.faces.size(); ++f, ++g) {
+    const ChartId chart = changed.mesh.charts[changed.mesh.chart_of_face[f]];
+    while (heat.mesh.charts[heat.mesh.chart_of_face[g]] != chart) ++g;
+    heat.is_new[g] = changed.is_new[f];
+  }
+  return heat;
+}
+
+void require_same_mesh(const Snapshot::Impl& from, const Snapshot::Impl& to) {
+  if (from.root().mesh != to.root().mesh || !(from.record().lattice == to.record().lattice))
+    throw Error(Errc::invalid_argument, "these versions do not hold the same mesh",
+                fmt::format("{} and {}", from.root().name, to.root().name), "name one mesh with --mesh");
 }
 
 }  // namespace
 
-DiffReport diff_versions(const Snapshot::Impl& from, const Snapshot::Impl& to, unsigned threads) {
-  if (from.root().mesh != to.root().mesh || !(from.record().lattice == to.record().lattice))
-    throw Error(Errc::invalid_argument, "these versions do not hold the same mesh",
-                fmt::format("{} and {}", from.root().name, to.root().name), "name one mesh with --mesh");
-  DiffReport report{from.version(), to.version(), {}, {}, {}, 0, 0, 0, {}};
-  Frontier a{from.pages(), {{from.root().root_page, from.root().root_version}}, {}};
-  Frontier b{to.pages(), {{to.root().root_page, to.root().root_version}}, {}};
-  for (drop_equal(a.pages, b.pages); !a.pages.empty() || !b.pages.empty(); drop_equal(a.pages, b.pages)) {
-    a.open_all();
-    b.open_all();
+DiffReport diff_versions(const Snapshot::Impl& from, const Snapshot::Impl& to, const DiffOptions& options) {
+  require_same_mesh(from, to);
+  if (!options.heatmap.empty()) require_heatmap_file(options.heatmap);
+  DiffReport report;
+  report.from = from.version();
+  report.to = to.version();
+  ReadCost cost;
+  ChartDifference charts = chart_difference(from.pages(), to.pages(), &cost);
+  const bool differ = !charts.changed.empty() || !charts.added.empty() || !charts.removed.empty();
+  Heat heat;
+  if (differ) {
+    VersionComparison comparison(from, to, charts, options.threads, cost);
+    const MeasuredChange measured = comparison.measure();
+    static_cast<ChangeFigures&>(report) = measured.total;
+    const std::vector<ChartId> listed = united(united(charts.changed, charts.added), charts.removed);
+    std::ranges::copy_if(measured.per_chart, std::back_inserter(report.per_chart),
+                         [&](const ChartChange& change) { return std::ranges::binary_search(listed, change.chart); });
+    if (!options.heatmap.empty()) heat = std::move(comparison).heat();
   }
-  for (const auto& [id, version] : a.charts) {
-    const auto other = b.charts.find(id);
-    if (other == b.charts.end())
-      report.removed.push_back(id);
-    else if (other->second != version)
-      report.changed.push_back(id);
+  if (!options.heatmap.empty()) {
+    if (options.heatmap_of_all) heat = over_all(to, heat, options.threads);
+    write_heatmap(to, heat, report.max_displacement, options.heatmap);
   }
-  for (const auto& [id, version] : b.charts)
-    if (!a.charts.contains(id)) report.added.push_back(id);
-
-  const auto before = ChartLoader(from).load(report.changed, threads);
-  const auto after = ChartLoader(to).load(report.changed, threads);
-  Displacements sum;
-  for (std::size_t i = 0; i < before.size(); ++i)
-    compare_charts(before[i], after[i], from.record().lattice, sum, report);
-  report.vertices_moved = sum.count();
-  report.rms_displacement = sum.rms();
+  report.changed = std::move(charts.changed);
+  report.added = std::move(charts.added);
+  report.removed = std::move(charts.removed);
+  report.bytes_read = cost.bytes;
+  report.blobs_read = cost.blobs;
+  report.pages_read = cost.pages;
   return report;
 }
 

@@ -199,9 +199,9 @@ CheckoutReport Repository::checkout_file(const Snapshot& snapshot, const std::ve
   }
 }
 
-ChangeReport Repository::status_file(const std::filesystem::path& file) const {
+ChangeReport Repository::status_file(const std::filesystem::path& file, const std::filesystem::path& heatmap) const {
   const auto& store = impl_->store();
-  ChangeReport report = detail::status_of_file(store, file);
+  ChangeReport report = detail::status_of_file(store, file, heatmap);
   const detail::Sidecar sidecar = detail::read_sidecar(file);
   std::vector<ChartId> charts;
   for (const auto& part : sidecar.parts) charts.insert(charts.end(), part.charts.begin(), part.charts.end());
@@ -236,8 +236,8 @@ RepackReport Repository::repack(std::string_view mesh, const RepackOptions& opti
   return report;
 }
 
-DiffReport Repository::diff(const Snapshot& from, const Snapshot& to, unsigned threads) const {
-  return detail::diff_versions(from.impl(), to.impl(), threads);
+DiffReport Repository::diff(const Snapshot& from, const Snapshot& to, const DiffOptions& options) const {
+  return detail::diff_versions(from.impl(), to.impl(), options);
 }
 
 VerifyReport Repository::verify(const VerifyOptions& options) const {

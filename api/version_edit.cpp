@@ -166,6 +166,10 @@ VersionId publish_roots(db::Writer& writer, const MergedRoots& merged, VersionId
 
 }  // namespace
 
+EditedRegion mesh_as_edit(const Snapshot::Impl& at, const RegionMesh& region, const RegionMesh& mesh) {
+  return MeshAsEdit(at, region, mesh).run();
+}
+
 PendingEdit edit_between(const Snapshot::Impl& from, const Snapshot::Impl& to, unsigned threads) {
   if (from.root().mesh != to.root().mesh || !(from.record().lattice == to.record().lattice))
     throw Error(Errc::invalid_argument, "these versions do not hold the same mesh",
@@ -185,7 +189,7 @@ PendingEdit edit_between(const Snapshot::Impl& from, const Snapshot::Impl& to, u
   const RegionPart part{&to, after};
   edit.region = load_region(edit.parts, threads, nullptr, true);
   const RegionMesh mesh = load_region(std::span(&part, 1), threads, nullptr, true);
-  edit.edited = MeshAsEdit(from, edit.region, mesh).run();
+  edit.edited = mesh_as_edit(from, edit.region, mesh);
   edit.changes = changes_of(from, edit.region, edit.edited);
   return edit;
 }

@@ -9,6 +9,10 @@ namespace ramcdb::detail {
 /// Throws invalid_argument when they do not hold the same mesh.
 [[nodiscard]] PendingEdit edit_between(const Snapshot::Impl& from, const Snapshot::Impl& to, unsigned threads);
 
+/// A mesh as an edit of a region, with its vertices and faces in the mesh's own order; corners of faces that stay are
+/// turned as the region has them.
+[[nodiscard]] EditedRegion mesh_as_edit(const Snapshot::Impl& at, const RegionMesh& region, const RegionMesh& mesh);
+
 /// Commits onto a branch what `theirs` changed since `base`, merging three ways where the branch changed the same
 /// charts. Conflicts come back in the report, with nothing written.
 /// \param operation what the version's figures call it

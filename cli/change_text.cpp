@@ -8,16 +8,31 @@
 namespace ramcdb::cli {
 namespace {
 
-std::string edit_text(const ChangeReport& report) {
-  std::string text = "charts touched    " + grouped(report.charts_touched.size()) + " (" +
-                     chart_list(report.charts_touched) + ")\nvertices moved    " + grouped(report.vertices_moved) +
-                     ", " + grouped(report.border_vertices_moved) +
-                     " of them on the region's border (charts outside follow)\n";
-  if (report.vertices_added > 0) text += "vertices added    " + grouped(report.vertices_added) + "\n";
-  if (report.vertices_removed > 0) text += "vertices removed  " + grouped(report.vertices_removed) + "\n";
-  if (report.values_changed > 0) text += "values changed    " + grouped(report.values_changed) + " (attributes)\n";
-  return text + "displacement      largest " + model_units(report.max_displacement) + ", rms " +
-         model_units(report.rms_displacement) + " (model units)\n";
+std::string charts_text(const std::vector<ChartChange>& changes) {
+  std::string text;
+  for (const ChangeClass wanted :
+       {ChangeClass::remeshed, ChangeClass::moved, ChangeClass::attributes, ChangeClass::untouched}) {
+    std::vector<ChartId> charts;
+    for (const ChartChange& change : changes)
+      if (change.change_class() == wanted) charts.push_back(change.chart);
+    if (charts.empty()) continue;
+    std::string title = class_text(wanted);
+    title.resize(16, ' ');
+    text += "  " + title + grouped(charts.size()) + " (" + chart_list(charts) + ")\n";
+  }
+  return text;
+}
+
+std::string with_sign(double change) { return (change > 0 ? "+" : "") + model_units(change); }
+
+std::string volume_text(const ChangeFigures& figures) {
+  return figures.volume_change ? with_sign(*figures.volume_change) : "-";
+}
+
+std::string border_text(const ChangeReport& report) {
+  if (!report.border_vertices_moved) return "";
+  return "  on the border   " + grouped(report.border_vertices_moved) +
+         " of those that moved; the charts outside follow\n";
 }
 
 std::string others_text(const ChangeReport& report) {
@@ -31,21 +46,96 @@ std::string others_text(const ChangeReport& report) {
 
 }  // namespace
 
+const char* class_text(ChangeClass change_class) {
+  switch (change_class) {
+    case ChangeClass::remeshed:
+      return "re-meshed";
+    case ChangeClass::moved:
+      return "moved";
+    case ChangeClass::attributes:
+      return "attributes";
+    case ChangeClass::untouched:
+      break;
+  }
+  return "re-cut only";
+}
+
+std::string figures_text(const ChangeFigures& figures, const std::vector<ChartChange>& charts) {
+  if (figures.clean() && charts.empty()) return "";
+  std::string text = "charts            " + grouped(charts.size()) + "\n" + charts_text(charts);
+  const auto line = [&](const char* title, std::uint64_t count) {
+    if (count) text += title + grouped(count) + "\n";
+  };
+  line("vertices moved    ", figures.vertices_moved);
+  line("vertices added    ", figures.vertices_added);
+  line("vertices removed  ", figures.vertices_removed);
+  line("faces added       ", figures.faces_added);
+  line("faces removed     ", figures.faces_removed);
+  line("values changed    ", figures.values_changed);
+  if (figures.vertices_moved)
+    text += "displacement      largest " + model_units(figures.max_displacement) + ", rms " +
+            model_units(figures.rms_displacement) + " (model units)\n";
+  if (!figures.vertices_moved && !figures.came_or_went()) return text;
+  text += "area              " + model_units(figures.area_before) + " -> " + model_units(figures.area_after) + " (" +
+          with_sign(figures.area_after - figures.area_before) + ")\n";
+  return text + "volume            " +
+         (figures.volume_change ? with_sign(*figures.volume_change)
+                                : std::string("not comparable, for an open border changed")) +
+         "\n";
+}
+
+std::string notes_text(const FileNotes& notes) {
+  std::string text;
+  if (!notes.frame.empty()) text += "undone            " + notes.frame + "\n";
+  if (notes.snapped_back)
+    text += "snapped back      " + counted(notes.snapped_back, "border vertex", "border vertices") +
+            " that only rounding had moved\n";
+  if (notes.values_interpolated)
+    text += "interpolated      " + counted(notes.values_interpolated, "value") +
+            " of what is new, from the surface that was there\n";
+  if (notes.attributes_missing)
+    text += "not in the file   " + counted(notes.attributes_missing, "attribute") + ", kept as before\n";
+  return text;
+}
+
 std::string change_text(const ChangeReport& report, const std::string& file) {
   std::string text = file + ": from " + version_text(report.base);
   if (report.tip != report.base) text += ", the tip is " + version_text(report.tip);
-  text += report.clean() ? "\nnothing changed\n" : "\n" + edit_text(report);
+  text += report.clean() ? "\nnothing changed\n" : "\n" + figures_text(report, report.per_chart) + border_text(report);
+  text += notes_text(report.notes);
   text += others_text(report);
   return report.locks.empty() ? text : text + "locks on its charts\n" + locks_text(report.locks);
 }
 
-std::string per_chart_text(const std::vector<ChangeReport::ChartChange>& changes) {
-  if (changes.empty()) return "";
-  Table table({{"chart"}, {"vertices moved"}, {"largest move"}, {"values changed"}});
-  for (const auto& change : changes)
-    table.add({std::to_string(change.chart.value), grouped(change.vertices_moved), model_units(change.max_displacement),
-               grouped(change.values_changed)});
-  return table.text();
+std::string per_chart_text(const std::vector<ChartChange>& changes) {
+  Table table({{"chart"},
+               {"class", Table::Align::left},
+               {"moved"},
+               {"added"},
+               {"removed"},
+               {"faces added"},
+               {"faces removed"},
+               {"values"},
+               {"largest move"},
+               {"rms"},
+               {"area"},
+               {"volume"}});
+  bool any = false;
+  for (const ChartChange& change : changes) {
+    if (change.clean()) continue;
+    any = true;
+    table.add({std::to_string(change.chart.value), class_text(change.change_class()), grouped(change.vertices_moved),
+               grouped(change.vertices_added), grouped(change.vertices_removed), grouped(change.faces_added),
+               grouped(change.faces_removed), grouped(change.values_changed), model_units(change.max_displacement),
+               model_units(change.rms_displacement), with_sign(change.area_after - change.area_before),
+               volume_text(change)});
+  }
+  return any ? table.text() : "";
+}
+
+std::string heatmap_text(const std::string& file, const ChangeFigures& figures) {
+  return "wrote " + file + ": dark blue where nothing moved to yellow for " + model_units(figures.max_displacement) +
+         " (model units); added faces are magenta\n";
 }
 
 }  // namespace ramcdb::cli

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "cli/change_text.h"
 #include "cli/chart_list.h"
 #include "cli/conflict_text.h"
 #include "cli/failure.h"
@@ -21,13 +22,30 @@ struct CommitCommand {
   OutputMode mode;
 };
 
+/// ", 3 faces added" for each of what there is any.
+std::string edit_text(const CommitReport& report) {
+  std::string text = counted(report.vertices_moved, "vertex", "vertices") + " moved";
+  if (report.vertices_moved) text += " by at most " + model_units(report.max_displacement) + " (model units)";
+  const auto add = [&](std::uint64_t count, const char* one, const char* several, const char* done) {
+    if (count) text += ", " + counted(count, one, several) + done;
+  };
+  add(report.vertices_added, "vertex", "vertices", " added");
+  add(report.vertices_removed, "vertex", "vertices", " removed");
+  add(report.faces_added, "face", "faces", " added");
+  add(report.faces_removed, "face", "faces", " removed");
+  add(report.values_changed, "value", "values", " of attributes changed");
+  return text + ", in " + counted(report.charts_touched, "chart");
+}
+
+std::string charts_text(const char* title, const std::vector<ChartId>& charts) {
+  return charts.empty() ? "" : title + grouped(charts.size()) + " (" + chart_list(charts) + ")\n";
+}
+
 std::string report_text(const CommitReport& report) {
-  if (report.nothing_changed) return "nothing changed: no version written\n";
-  return version_text(report.revision) + " after " + version_text(report.parent) + ": " +
-         counted(report.vertices_moved, "vertex", "vertices") + " moved in " + counted(report.charts_touched, "chart") +
-         ", by at most " + model_units(report.max_displacement) + " (model units)" +
-         (report.values_changed ? ", " + counted(report.values_changed, "value") + " of attributes changed" : "") +
-         "\nre-encoded " + counted(report.charts_reencoded, "chart") +
+  if (report.nothing_changed) return "nothing changed: no version written\n" + notes_text(report.notes);
+  return version_text(report.revision) + " after " + version_text(report.parent) + ": " + edit_text(report) + "\n" +
+         charts_text("charts added      ", report.added) + charts_text("charts removed    ", report.removed) +
+         notes_text(report.notes) + "re-encoded " + counted(report.charts_reencoded, "chart") +
          (report.layers_reencoded ? ", " + counted(report.layers_reencoded, "attribute blob") : "") + " and " +
          counted(report.wires_reencoded, "wire") + ", wrote " + counted(report.bytes_written, "byte") + " in " +
          duration(report.seconds) + "\n";

@@ -14,10 +14,12 @@
 namespace ramcdb::cli {
 namespace {
 
-struct DiffOptions {
+struct DiffCommand {
   std::string target;    ///< a checked-out file, or a repository when revisions follow
   std::string from, to;  ///< both or neither
   MeshAt which;
+  std::string heatmap;
+  bool all = false;
   unsigned threads = 1;
   OutputMode mode;
 };
@@ -28,54 +30,69 @@ std::string chart_line(const char* title, const std::vector<ChartId>& charts) {
 }
 
 std::string versions_text(const DiffReport& report) {
-  const std::string charts = chart_line("charts changed  ", report.changed) +
-                             chart_line("charts added    ", report.added) +
-                             chart_line("charts removed  ", report.removed);
-  std::string text = version_text(report.from) + " to " + version_text(report.to) + "\n";
-  if (charts.empty()) return text + "no difference\n";
-  return text + charts + "vertices moved  " + grouped(report.vertices_moved) + "\ndisplacement    largest " +
-         model_units(report.max_displacement) + ", rms " + model_units(report.rms_displacement) + " (model units)\n" +
+  const std::string text = version_text(report.from) + " to " + version_text(report.to) + "\n";
+  if (report.per_chart.empty()) return text + "no difference\n";
+  return text + chart_line("charts changed    ", report.changed) + chart_line("charts added      ", report.added) +
+         chart_line("charts removed    ", report.removed) + figures_text(report, report.per_chart) +
          per_chart_text(report.per_chart);
 }
 
-int diff_file(const DiffOptions& options) {
-  const ChangeReport report = open_for_file(options.target).status_file(options.target);
-  say(options.mode.json ? diff_json(report) : change_text(report, options.target) + per_chart_text(report.per_chart));
+template <class Report>
+int tell(const DiffCommand& command, const Report& report, const std::string& text) {
+  if (command.mode.json)
+    say(diff_json(report));
+  else
+    say(command.heatmap.empty() ? text : text + heatmap_text(command.heatmap, report));
   return kDone;
 }
 
-int diff_versions(const DiffOptions& options) {
-  const Repository repository = Repository::open(options.target);
-  const Snapshot from = repository.snapshot(options.which.mesh, options.from);
-  const Snapshot to = repository.snapshot(options.which.mesh, options.to);
-  const DiffReport report = repository.diff(from, to, options.threads);
-  say(options.mode.json ? diff_json(report) : versions_text(report));
-  return kDone;
+int diff_file(const DiffCommand& command) {
+  const ChangeReport report = open_for_file(command.target).status_file(command.target, command.heatmap);
+  return tell(command, report, change_text(report, command.target) + per_chart_text(report.per_chart));
 }
 
-int run_diff(const DiffOptions& options) {
-  if (options.from.empty() && !options.which.mesh.empty())
+int diff_versions(const DiffCommand& command) {
+  const Repository repository = Repository::open(command.target);
+  const Snapshot from = repository.snapshot(command.which.mesh, command.from);
+  const Snapshot to = repository.snapshot(command.which.mesh, command.to);
+  DiffOptions options;
+  options.threads = command.threads;
+  options.heatmap = command.heatmap;
+  options.heatmap_of_all = command.all;
+  const DiffReport report = repository.diff(from, to, options);
+  return tell(command, report, versions_text(report));
+}
+
+int run_diff(const DiffCommand& command) {
+  if (command.from.empty() && !command.which.mesh.empty())
     throw UsageError(usage_text("--mesh goes with two versions, not with a file", "diff"));
-  return options.from.empty() ? diff_file(options) : diff_versions(options);
+  if (command.all && (command.from.empty() || command.heatmap.empty()))
+    throw UsageError(usage_text("--all goes with two versions and --heatmap", "diff"));
+  return command.from.empty() ? diff_file(command) : diff_versions(command);
 }
 
 }  // namespace
 
 void setup_diff(CLI::App& app, Run& run) {
-  const auto options = std::make_shared<DiffOptions>();
+  const auto command = std::make_shared<DiffCommand>();
   CLI::App& verb =
       *app.add_subcommand("diff", "Show what differs, chart by chart: a file from its base, or two versions");
-  verb.add_option("FILE|REPO", options->target, "A checked-out file, or a repository followed by two versions")
+  verb.add_option("FILE|REPO", command->target, "A checked-out file, or a repository followed by two versions")
       ->required();
-  CLI::Option* from = verb.add_option("REV1", options->from, "The older version")->type_name("");
-  CLI::Option* to = verb.add_option("REV2", options->to, "The newer version")->type_name("");
+  CLI::Option* from = verb.add_option("REV1", command->from, "The older version")->type_name("");
+  CLI::Option* to = verb.add_option("REV2", command->to, "The newer version")->type_name("");
   from->needs(to);
   to->needs(from);
-  add_mesh(verb, options->which);
-  add_threads(verb, options->threads);
-  add_output_mode(verb, options->mode);
-  add_example(verb, "ramcdb diff horn.ply\n  ramcdb diff statues.ramcdb HEAD~1 HEAD --mesh dragon");
-  verb.callback([options, &run] { run = [options] { return run_diff(*options); }; });
+  add_mesh(verb, command->which);
+  verb.add_option("--heatmap", command->heatmap,
+                  "Write a .ply or .glb to look at: the file's region, or the charts that differ, "
+                  "coloured by how far vertices were moved; added faces in magenta")
+      ->type_name("FILE");
+  verb.add_flag("--all", command->all, "The heat map shows the whole mesh");
+  add_threads(verb, command->threads);
+  add_output_mode(verb, command->mode);
+  add_example(verb, "ramcdb diff horn.ply\n  ramcdb diff statues.ramcdb HEAD~1 HEAD --mesh dragon --heatmap moved.ply");
+  verb.callback([command, &run] { run = [command] { return run_diff(*command); }; });
 }
 
 }  // namespace ramcdb::cli

@@ -131,31 +131,72 @@ Json of(const std::vector<RefName>& refs) {
   return json;
 }
 
-Json of(const ChangeReport& report) {
-  return {{"base", report.base.value},
-          {"tip", report.tip.value},
-          {"charts_touched", report.charts_touched.size()},
-          {"vertices_moved", report.vertices_moved},
-          {"vertices_added", report.vertices_added},
-          {"vertices_removed", report.vertices_removed},
-          {"max_displacement", report.max_displacement},
-          {"conflicts", of(report.conflicts)},
-          {"clean", report.clean()},
-          {"values_changed", report.values_changed},
-          {"charts", of(report.charts_touched)},
-          {"border_vertices_moved", report.border_vertices_moved},
-          {"rms_displacement", report.rms_displacement},
-          {"changed_by_others", of(report.changed_by_others)},
-          {"locks", of(report.locks)}};
+Json of(const FileNotes& notes) {
+  return {{"frame", notes.frame},
+          {"snapped_back", notes.snapped_back},
+          {"attributes_missing", notes.attributes_missing},
+          {"values_interpolated", notes.values_interpolated}};
 }
 
-Json of(const std::vector<ChangeReport::ChartChange>& changes) {
+const char* name_of(ChangeClass change_class) {
+  switch (change_class) {
+    case ChangeClass::remeshed:
+      return "remeshed";
+    case ChangeClass::moved:
+      return "moved";
+    case ChangeClass::attributes:
+      return "attributes";
+    case ChangeClass::untouched:
+      break;
+  }
+  return "untouched";
+}
+
+/// What of a change stands behind the keys that all have.
+Json more_of(const ChangeFigures& figures) {
+  Json json = {{"faces_added", figures.faces_added},
+               {"faces_removed", figures.faces_removed},
+               {"area_before", figures.area_before},
+               {"area_after", figures.area_after},
+               {"volume_change", nullptr}};
+  if (figures.volume_change) json["volume_change"] = *figures.volume_change;
+  return json;
+}
+
+Json of(const ChangeReport& report) {
+  Json json = {{"base", report.base.value},
+               {"tip", report.tip.value},
+               {"charts_touched", report.charts_touched.size()},
+               {"vertices_moved", report.vertices_moved},
+               {"vertices_added", report.vertices_added},
+               {"vertices_removed", report.vertices_removed},
+               {"max_displacement", report.max_displacement},
+               {"conflicts", of(report.conflicts)},
+               {"clean", report.clean()},
+               {"values_changed", report.values_changed},
+               {"charts", of(report.charts_touched)},
+               {"border_vertices_moved", report.border_vertices_moved},
+               {"rms_displacement", report.rms_displacement},
+               {"changed_by_others", of(report.changed_by_others)},
+               {"locks", of(report.locks)}};
+  json.update(more_of(report));
+  json["notes"] = of(report.notes);
+  return json;
+}
+
+Json of(const std::vector<ChartChange>& changes) {
   Json json = Json::array();
-  for (const auto& change : changes)
+  for (const ChartChange& change : changes) {
     json.push_back({{"chart", change.chart.value},
+                    {"class", name_of(change.change_class())},
                     {"vertices_moved", change.vertices_moved},
+                    {"vertices_added", change.vertices_added},
+                    {"vertices_removed", change.vertices_removed},
                     {"values_changed", change.values_changed},
-                    {"max_displacement", change.max_displacement}});
+                    {"max_displacement", change.max_displacement},
+                    {"rms_displacement", change.rms_displacement}});
+    json.back().update(more_of(change));
+  }
   return json;
 }
 
@@ -234,7 +275,7 @@ std::string checkout_json(const CheckoutReport& report) {
   return printed(json);
 }
 
-std::string status_json(const ChangeReport& report) { return printed(of(report)); }
+std::string status_json(const ChangeReport& report) { return diff_json(report); }
 
 std::string diff_json(const ChangeReport& report) {
   Json json = of(report);
@@ -243,15 +284,23 @@ std::string diff_json(const ChangeReport& report) {
 }
 
 std::string diff_json(const DiffReport& report) {
-  return printed({{"from", report.from.value},
-                  {"to", report.to.value},
-                  {"changed", of(report.changed)},
-                  {"added", of(report.added)},
-                  {"removed", of(report.removed)},
-                  {"vertices_moved", report.vertices_moved},
-                  {"max_displacement", report.max_displacement},
-                  {"rms_displacement", report.rms_displacement},
-                  {"per_chart", of(report.per_chart)}});
+  Json json = {{"from", report.from.value},
+               {"to", report.to.value},
+               {"changed", of(report.changed)},
+               {"added", of(report.added)},
+               {"removed", of(report.removed)},
+               {"vertices_moved", report.vertices_moved},
+               {"max_displacement", report.max_displacement},
+               {"rms_displacement", report.rms_displacement},
+               {"per_chart", of(report.per_chart)},
+               {"vertices_added", report.vertices_added},
+               {"vertices_removed", report.vertices_removed},
+               {"values_changed", report.values_changed}};
+  json.update(more_of(report));
+  json["bytes_read"] = report.bytes_read;
+  json["blobs_read"] = report.blobs_read;
+  json["pages_read"] = report.pages_read;
+  return printed(json);
 }
 
 std::string commit_json(const CommitReport& report) {
@@ -275,7 +324,12 @@ std::string commit_json(const CommitReport& report) {
                   {"conflicts", of(report.conflicts)},
                   {"merged", report.merged},
                   {"conflict_places", of(report.conflict_places)},
-                  {"normals_left", report.normals_left}});
+                  {"normals_left", report.normals_left},
+                  {"faces_added", report.faces_added},
+                  {"faces_removed", report.faces_removed},
+                  {"added", of(report.added)},
+                  {"removed", of(report.removed)},
+                  {"notes", of(report.notes)}});
 }
 
 std::string merge_json(const MergeReport& report) {

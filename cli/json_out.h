@@ -18,8 +18,9 @@ namespace ramcdb::cli {
 [[nodiscard]] std::string charts_json(const std::vector<ChartSummary>& charts, VersionId revision);
 /// Of checkout and of export.
 [[nodiscard]] std::string checkout_json(const CheckoutReport& report);
+/// With a row per chart.
 [[nodiscard]] std::string status_json(const ChangeReport& report);
-/// Of `diff FILE`: the status and a row per chart.
+/// Of `diff FILE`: the status.
 [[nodiscard]] std::string diff_json(const ChangeReport& report);
 /// Of `diff REPO REV1 REV2`.
 [[nodiscard]] std::string diff_json(const DiffReport& report);

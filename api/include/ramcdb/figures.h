@@ -122,30 +122,53 @@ struct FileNotes {
   std::uint64_t values_interpolated = 0;  ///< of new vertices, corners and faces, from the surface that was there
 };
 
+/// How much changed. Lengths, areas and volumes in model units.
+struct ChangeFigures {
+  std::uint64_t vertices_moved = 0, vertices_added = 0, vertices_removed = 0;
+  std::uint64_t faces_added = 0, faces_removed = 0;   ///< triangles; a face is the same while its vertices are
+  std::uint64_t values_changed = 0;                   ///< of attributes, of what stays
+  double max_displacement = 0, rms_displacement = 0;  ///< rms over moved vertices
+  double area_before = 0, area_after = 0;             ///< of the triangles that were looked at, changed or not
+  /// How much larger the volume inside is; none where that is not defined, because an open border moved.
+  std::optional<double> volume_change = 0;
+
+  /// Nothing changed.
+  [[nodiscard]] bool clean() const { return !came_or_went() && vertices_moved + values_changed == 0; }
+  [[nodiscard]] bool came_or_went() const {
+    return vertices_added + vertices_removed + faces_added + faces_removed > 0;
+  }
+};
+
+/// What happened to a chart; of several things the last.
+enum class ChangeClass {
+  untouched,   ///< it was at most cut or coded anew: every vertex, face and value of it was there before
+  attributes,  ///< values changed
+  moved,       ///< vertices moved
+  remeshed,    ///< vertices or faces came or went
+};
+
+struct ChartChange : ChangeFigures {
+  ChartId chart;
+  [[nodiscard]] ChangeClass change_class() const {
+    if (came_or_went()) return ChangeClass::remeshed;
+    if (vertices_moved) return ChangeClass::moved;
+    return values_changed ? ChangeClass::attributes : ChangeClass::untouched;
+  }
+};
+
 /// What an edited region would change, or did.
-struct ChangeReport {
+struct ChangeReport : ChangeFigures {
   FileNotes notes;
   VersionId base, tip;
-  std::vector<ChartId> charts_touched;  ///< with a moved vertex, border included, inside the region
-  std::uint64_t vertices_moved = 0, vertices_added = 0, vertices_removed = 0;
-  std::uint64_t faces_added = 0, faces_removed = 0;   ///< triangles
-  std::uint64_t values_changed = 0;                   ///< of attributes, of what stays
-  std::uint64_t border_vertices_moved = 0;            ///< of them, on the region's own border
-  double max_displacement = 0, rms_displacement = 0;  ///< model units; rms over moved vertices
-  struct ChartChange {
-    ChartId chart;
-    std::uint64_t vertices_moved = 0;
-    double max_displacement = 0;
-    std::uint64_t values_changed = 0;
-    bool remeshed = false;  ///< faces come or go
-  };
+  /// Charts of the region, ascending, that anything in them changes, border included, or that have to be cut anew
+  /// beside a change.
+  std::vector<ChartId> charts_touched;
+  std::uint64_t border_vertices_moved = 0;  ///< of those that moved, on the region's own border
+  /// Of the charts touched. Shared vertices count in each chart. New faces count in the chart that they are at.
   std::vector<ChartChange> per_chart;
   std::vector<ChartId> changed_by_others;  ///< charts of the region that newer versions changed
   std::vector<ChartId> conflicts;          ///< of these, the ones that this edit touches too
   std::vector<LockInfo> locks;             ///< on charts of the region, whoever holds them
-  [[nodiscard]] bool clean() const {
-    return vertices_moved + vertices_added + vertices_removed + faces_added + faces_removed + values_changed == 0;
-  }
 };
 
 /// A place that two edits changed in different ways.
@@ -211,13 +234,14 @@ struct VerifyReport {
   [[nodiscard]] bool ok() const { return problems.empty(); }
 };
 
-/// How two versions of a mesh differ, chart by chart.
-struct DiffReport {
+/// How two versions of a mesh differ, whatever charts it was cut into. Areas are those of the charts that differ.
+struct DiffReport : ChangeFigures {
   VersionId from, to;
   std::vector<ChartId> changed, added, removed;  ///< charts
-  std::uint64_t vertices_moved = 0;
-  double max_displacement = 0, rms_displacement = 0;  ///< model units; rms over moved vertices
-  std::vector<ChangeReport::ChartChange> per_chart;
+  /// Of all these charts, ascending. What moved, was added or has another value counts in the chart that has it in the
+  /// newer version, what is gone in the chart that had it.
+  std::vector<ChartChange> per_chart;
+  std::uint64_t bytes_read = 0, blobs_read = 0, pages_read = 0;
 };
 
 }  // namespace ramcdb

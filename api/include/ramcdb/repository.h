@@ -81,6 +81,15 @@ struct CommitOptions {
   std::string onto = {};
 };
 
+struct DiffOptions {
+  unsigned threads = 1;
+  /// Not empty: a mesh to look at, .ply or .glb, coloured by how far vertices were moved: from dark blue for none to
+  /// yellow for `max_displacement`; faces that were added are magenta. PLY has the displacement (model units, 0 for
+  /// added vertices) as a number of each vertex, too. The charts that differ, as the newer version has them.
+  std::filesystem::path heatmap;
+  bool heatmap_of_all = false;  ///< of all charts
+};
+
 struct RepackOptions {
   std::optional<ChartProfile> profile;  ///< the mesh's own, with tables trained anew, when not said
   std::string message;                  ///< "repack as PROFILE" when empty
@@ -170,8 +179,11 @@ class Repository {
   CheckoutReport checkout_file(const Snapshot& snapshot, const std::vector<ChartId>& charts,
                                const std::filesystem::path& file, const FileOptions& options) const;
 
-  /// What a checked-out file would change. Throws invalid_argument when its connectivity is not the region's any more.
-  [[nodiscard]] ChangeReport status_file(const std::filesystem::path& file) const;
+  /// What a checked-out file would change. Throws invalid_argument where its edges at charts outside the region are not
+  /// as they were.
+  /// \param heatmap not empty: a mesh to look at, as DiffOptions::heatmap, of the file's region
+  [[nodiscard]] ChangeReport status_file(const std::filesystem::path& file,
+                                         const std::filesystem::path& heatmap = {}) const;
   /// Commits it. Conflicts come back in the report, with nothing written. Updates the sidecar to the new version.
   CommitReport commit_file(const std::filesystem::path& file, const CommitOptions& options);
 
@@ -186,7 +198,10 @@ class Repository {
   /// these. Throws limit_exceeded where vertices would leave the lattice.
   CommitReport transform(std::string_view mesh, const Region& region, const TransformOptions& options);
 
-  [[nodiscard]] DiffReport diff(const Snapshot& from, const Snapshot& to, unsigned threads = 1) const;
+  /// How two versions of a mesh differ: reads the charts that do, and the index pages above them. Vertices and faces
+  /// are recognized whatever charts they are in. Throws invalid_argument for snapshots of different meshes, and for a
+  /// heat map in another format, or where a checked-out file is.
+  [[nodiscard]] DiffReport diff(const Snapshot& from, const Snapshot& to, const DiffOptions& options = {}) const;
 
   /// Codes all charts of a mesh of a branch anew, as a new version that holds the very same mesh: in another profile,
   /// or with tables that suit it better after many edits. In the profile that the mesh has, a version is written only
