@@ -83,8 +83,6 @@ void note_topology(MeshRecord& record, const chartify::IndexedMesh& mesh) {
   const Topology t = analyze(mesh);
   record.vertices = mesh.positions.size();
   record.faces = mesh.faces.size();
-  record.components = t.components;
-  record.boundary_loops = t.boundary_loops;
   record.nonmanifold_edges = t.nonmanifold_edges;
   record.nonmanifold_vertices = t.nonmanifold_vertices;
   record.inconsistent_edges = t.inconsistent_edges;

@@ -5,6 +5,7 @@
 
 #include "api/page_index.h"
 #include "api/parallel.h"
+#include "api/surface_pieces.h"
 #include "codec/dense_training.h"
 #include "codec/fast_training.h"
 #include "codec/wire_codec.h"
@@ -23,6 +24,7 @@ PageChart chart_entry(const chartify::NetChart& chart, std::uint32_t index, Tabl
     WireLoop& loop = entry.loops.emplace_back();
     for (const chartify::NetLoopStep step : steps) loop.push_back({WireId(step.wire + 1), step.reversed});
   }
+  entry.pieces = pieces_of(chart.chart);
   return entry;
 }
 

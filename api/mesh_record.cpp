@@ -84,8 +84,6 @@ void visit_counters(Record& r, Visit&& visit) {
   visit(r.charts);
   visit(r.wires);
   visit(r.corners);
-  visit(r.components);
-  visit(r.boundary_loops);
   visit(r.nonmanifold_edges);
   visit(r.nonmanifold_vertices);
   visit(r.isolated_vertices);

@@ -41,7 +41,7 @@ struct MeshRecord {
   VersionId layers;  ///< the version that wrote the layer table; 0: the mesh has no layers
 
   std::uint64_t vertices = 0, faces = 0, charts = 0, wires = 0, corners = 0;
-  std::uint64_t components = 0, boundary_loops = 0, nonmanifold_edges = 0, nonmanifold_vertices = 0;
+  std::uint64_t nonmanifold_edges = 0, nonmanifold_vertices = 0;
   std::uint64_t isolated_vertices = 0, degenerate_faces = 0, duplicate_faces = 0, inconsistent_edges = 0;
 
   codec::ChartCost chart_cost;    ///< of all charts, in 1/256 bit, without checksums

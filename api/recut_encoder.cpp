@@ -10,6 +10,7 @@
 #include "api/recut_surface.h"
 #include "api/region_faces.h"
 #include "api/store_format.h"
+#include "api/surface_pieces.h"
 #include "api/topology.h"
 #include "chartify/wire_net_builder.h"
 #include "codec/wire_codec.h"
@@ -265,6 +266,7 @@ class RecutEncoder {
       for (const NetLoopStep step : steps)
         loop.push_back({wire_[step.wire].id, step.reversed != wire_[step.wire].reversed});
     }
+    entry.pieces = pieces_of(chart.chart);
     return entry;
   }
 

@@ -84,9 +84,9 @@ std::vector<MeshSummary> Repository::meshes(std::string_view revision) const {
   const VersionId version = store->resolve(revision);
   std::vector<MeshSummary> summaries;
   for (const db::MeshRoot& root : store->roots(version)) {
-    const Snapshot snapshot(std::make_shared<Snapshot::Impl>(store, version, root));
-    const MeshInfo info = snapshot.info();
-    summaries.push_back({root.name, root.mesh, info.vertices, info.faces, info.charts, info.bytes.payload});
+    const Snapshot::Impl at(store, version, root);
+    const detail::MeshRecord& record = at.record();
+    summaries.push_back({root.name, root.mesh, record.vertices, record.faces, record.charts, at.bytes().payload});
   }
   return summaries;
 }

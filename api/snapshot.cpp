@@ -10,31 +10,11 @@
 #include "api/region_query.h"
 #include "api/snapshot_impl.h"
 #include "api/store_format.h"
+#include "api/surface_pieces.h"
 #include "ramcdb/error.h"
 
 namespace ramcdb {
 namespace {
-
-/// From 1/256 bit to whole bytes, so that the parts add up to the payload: what rounding leaves goes to the headers.
-MeshBytes bytes_of(const Snapshot::Impl& at) {
-  const detail::MeshRecord& record = at.record();
-  const auto whole = [](std::uint64_t cost) { return (cost + 1024) / 2048; };
-  MeshBytes bytes;
-  bytes.wire_net = record.page_bytes;
-  bytes.wires = record.wire_bytes;
-  bytes.connectivity = whole(record.chart_cost.connectivity);
-  bytes.geometry = whole(record.chart_cost.geometry) + record.exact_bytes;
-  const std::uint64_t charts =
-      whole(record.chart_cost.header + record.chart_cost.connectivity + record.chart_cost.geometry) +
-      record.charts * detail::kBlobOverhead + record.exact_bytes;
-  bytes.chart_headers = charts - bytes.connectivity - bytes.geometry;
-  bytes.attributes = record.layer_bytes;
-  bytes.tables = record.table_bytes + at.record_bytes();
-  bytes.payload = bytes.wire_net + bytes.wires + charts + bytes.attributes + bytes.tables;
-  const auto usage = at.store().usage();
-  bytes.store = usage.blob_file + usage.catalogue;
-  return bytes;
-}
 
 MeshInfo::Spread spread_of(std::vector<std::uint32_t> sizes) {
   if (sizes.empty()) return {};
@@ -98,8 +78,9 @@ MeshInfo Snapshot::info() const {
   info.wires = record.wires;
   info.corners = record.corners;
   info.polygons = record.polygons;
-  info.components = record.components;
-  info.boundary_loops = record.boundary_loops;
+  const detail::SurfaceCounts surfaces = detail::count_surfaces(impl_->pages());
+  info.components = surfaces.components;
+  info.boundary_loops = surfaces.boundary_loops;
   info.nonmanifold_edges = record.nonmanifold_edges;
   info.nonmanifold_vertices = record.nonmanifold_vertices;
   info.inconsistent_edges = record.inconsistent_edges;
@@ -115,7 +96,7 @@ MeshInfo Snapshot::info() const {
   for (const detail::Layer& layer : impl_->layers().layers)
     if (layer.coding != detail::LayerCoding::polygons) info.attributes.push_back({layer.info, layer.max_error()});
   info.references = impl_->layers().references;
-  info.bytes = bytes_of(*impl_);
+  info.bytes = impl_->bytes();
   info.chart_faces = spread_of(chart_sizes(impl_->pages()));
   return info;
 }

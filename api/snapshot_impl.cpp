@@ -39,4 +39,24 @@ const codec::CoderTables& Snapshot::Impl::tables(TableId table) const {
   return built_in_tables_;
 }
 
+/// From 1/256 bit to whole bytes, so that the parts add up to the payload: what rounding leaves goes to the headers.
+MeshBytes Snapshot::Impl::bytes() const {
+  const auto whole = [](std::uint64_t cost) { return (cost + 1024) / 2048; };
+  MeshBytes bytes;
+  bytes.wire_net = record_.page_bytes;
+  bytes.wires = record_.wire_bytes;
+  bytes.connectivity = whole(record_.chart_cost.connectivity);
+  bytes.geometry = whole(record_.chart_cost.geometry) + record_.exact_bytes;
+  const std::uint64_t charts =
+      whole(record_.chart_cost.header + record_.chart_cost.connectivity + record_.chart_cost.geometry) +
+      record_.charts * detail::kBlobOverhead + record_.exact_bytes;
+  bytes.chart_headers = charts - bytes.connectivity - bytes.geometry;
+  bytes.attributes = record_.layer_bytes;
+  bytes.tables = record_.table_bytes + record_bytes_;
+  bytes.payload = bytes.wire_net + bytes.wires + charts + bytes.attributes + bytes.tables;
+  const auto usage = store_->usage();
+  bytes.store = usage.blob_file + usage.catalogue;
+  return bytes;
+}
+
 }  // namespace ramcdb

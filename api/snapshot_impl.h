@@ -23,6 +23,7 @@ class Snapshot::Impl {
   [[nodiscard]] const db::MeshRoot& root() const { return pages_.root(); }
   [[nodiscard]] const detail::MeshRecord& record() const { return record_; }
   [[nodiscard]] std::uint64_t record_bytes() const { return record_bytes_; }
+  [[nodiscard]] MeshBytes bytes() const;
   [[nodiscard]] const detail::PageIndex& pages() const { return pages_; }
   [[nodiscard]] const detail::LayerTable& layers() const { return layers_; }
   /// The tables that a chart names. Throws unsupported_version for others than the mesh's own and the built-in ones.

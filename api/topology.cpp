@@ -1,32 +1,13 @@
 #include "api/topology.h"
 
 #include <algorithm>
-#include <numeric>
 #include <span>
 #include <vector>
 
+#include "api/disjoint_sets.h"
+
 namespace ramcdb::detail {
 namespace {
-
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
-
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  /// True when the two were apart.
-  bool join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-    return a != b;
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 bool is_degenerate(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
@@ -62,28 +43,6 @@ void for_each_edge(const std::vector<Pass>& passes, Visit&& edge) {
       ++end;
     edge(std::span(passes).subspan(begin, end - begin));
   }
-}
-
-std::uint64_t count_components(const chartify::IndexedMesh& mesh, const std::vector<bool>& used) {
-  DisjointSets sets(mesh.positions.size());
-  auto count = static_cast<std::uint64_t>(std::count(used.begin(), used.end(), true));
-  for (const Triangle& t : mesh.faces) count -= static_cast<unsigned>(sets.join(t[0], t[1])) + sets.join(t[0], t[2]);
-  return count;
-}
-
-std::uint64_t count_boundary_loops(const std::vector<Pass>& passes, std::size_t vertices) {
-  DisjointSets sets(vertices);
-  std::vector<bool> on_border(vertices, false);
-  std::uint64_t loops = 0;
-  for_each_edge(passes, [&](std::span<const Pass> edge) {
-    if (edge.size() != 1) return;
-    for (const std::uint32_t v : {edge[0].low, edge[0].high}) {
-      loops += !on_border[v];
-      on_border[v] = true;
-    }
-    loops -= sets.join(edge[0].low, edge[0].high);
-  });
-  return loops;
 }
 
 /// Vertices whose face corners stay in several groups after corners are joined over every edge at the vertex.
@@ -133,13 +92,11 @@ Topology analyze(const chartify::IndexedMesh& mesh) {
     t.degenerate_faces += is_degenerate(face);
   }
   t.isolated_vertices = static_cast<std::uint64_t>(std::count(used.begin(), used.end(), false));
-  t.components = count_components(mesh, used);
   const std::vector<Pass> passes = sorted_passes(mesh.faces);
   for_each_edge(passes, [&](std::span<const Pass> edge) {
     t.nonmanifold_edges += edge.size() > 2;
     t.inconsistent_edges += edge.size() == 2 && edge[0].forward == edge[1].forward;
   });
-  t.boundary_loops = count_boundary_loops(passes, mesh.positions.size());
   t.nonmanifold_vertices = count_nonmanifold_vertices(mesh, passes);
   t.duplicate_faces = count_duplicates(mesh.faces);
   return t;

@@ -8,12 +8,10 @@ namespace ramcdb::detail {
 
 /// What a mesh is like, counted and reported; nothing of it is repaired.
 struct Topology {
-  std::uint64_t components = 0;            ///< sets of faces that are joined by shared vertices
-  std::uint64_t boundary_loops = 0;        ///< connected sets of edges with one face
   std::uint64_t nonmanifold_edges = 0;     ///< edges with more than two faces
   std::uint64_t nonmanifold_vertices = 0;  ///< on no such edge, yet their faces do not form one fan
   std::uint64_t inconsistent_edges = 0;    ///< two faces pass the edge in the same direction
-  std::uint64_t degenerate_faces = 0;      ///< name a vertex twice; they count in nothing above but the components
+  std::uint64_t degenerate_faces = 0;      ///< name a vertex twice; they count in nothing above
   std::uint64_t duplicate_faces = 0;       ///< have the three vertices of an earlier face
   std::uint64_t isolated_vertices = 0;     ///< in no face
 };

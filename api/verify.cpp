@@ -9,6 +9,7 @@
 #include "api/chart_loader.h"
 #include "api/parallel.h"
 #include "api/snapshot_impl.h"
+#include "api/surface_pieces.h"
 #include "codec/page_codec.h"
 #include "ramcdb/error.h"
 
@@ -132,6 +133,8 @@ class Verifier {
     LatticeBox box;
     for (const LatticePoint p : loaded.front().chart.positions) box.add(p);
     if (!(box == entry.box)) throw Error(Errc::corrupt, "the chart's box in its index page is not its exact box");
+    if (!(pieces_of(loaded.front().chart) == entry.pieces))
+      throw Error(Errc::corrupt, "the chart's pieces in its index page are not those of its faces");
   }
 
   void check_presence(const Snapshot::Impl& at, const LeafPage& leaf) {

@@ -13,10 +13,11 @@
 ///   stream  range coder (range_coder.h)
 ///
 /// Leaf page: newest version; number of charts; then chart by chart: id, version, table, loops, faces, inner vertices,
-/// box, layers. Loops are walked: every step is a wire of the page that goes on from the corner reached, by its rank
-/// among those (most recently met first), or the next new wire, which brings its id, version, inner points, group and,
-/// unless the loop closes with it, its end corner. So a corner's id and position stand where it is first met, and the
-/// second chart on a wire mostly costs a fraction of a bit for it. At last, wire by wire, the charts outside the page.
+/// pieces, box, layers. Loops are walked: every step is a wire of the page that goes on from the corner reached, by its
+/// rank among those (most recently met first), or the next new wire, which brings its id, version, inner points, group
+/// and, unless the loop closes with it, its end corner. So a corner's id and position stand where it is first met, and
+/// the second chart on a wire mostly costs a fraction of a bit for it. At last, wire by wire, the charts outside the
+/// page.
 ///
 /// Inner page: newest version; number of entries; entry by entry: id, version, box, faces, runs of charts.
 ///
@@ -150,6 +151,7 @@ class LeafCoder {
     // Euler: a disk of F faces with B border vertices has (F - B) / 2 + 1 inner ones.
     const std::uint32_t expected = chart.faces >= border ? (chart.faces - border) / 2 + 1 : 0;
     chart.inner_vertices = f_.near(inner_, chart.inner_vertices, expected);
+    code_pieces(chart);
     code_box(chart.box, corners);
     code_layers(chart);
   }
@@ -278,6 +280,22 @@ class LeafCoder {
     return id;
   }
 
+  /// Mostly a chart is one piece.
+  void code_pieces(PageChart& chart) {
+    ChartPieces one{std::vector<std::uint32_t>(chart.loops.size(), 0), chart.loops.empty() && chart.faces > 0};
+    if (coder_.code(one_piece_, chart.pieces == one)) {
+      chart.pieces = std::move(one);
+      return;
+    }
+    last_closed_ = chart.pieces.closed = f_.near(closed_, chart.pieces.closed, last_closed_);
+    chart.pieces.of_loop.resize(chart.loops.size());
+    std::uint32_t pieces = 0;
+    for (std::uint32_t& piece : chart.pieces.of_loop) {
+      piece = pieces - loop_piece_.code(coder_, pieces - piece);
+      pieces += piece == pieces;
+    }
+  }
+
   void code_box(LatticeBox& box, const LatticeBox& corners) {
     if (coder_.code(empty_box_, box.empty())) {
       box = {};
@@ -367,14 +385,15 @@ class LeafCoder {
   std::vector<Candidate> candidates_;
   std::uint32_t clock_ = 0, steps_ = 0;
   LatticePoint last_position_;
-  std::uint32_t last_chart_ = 0, last_wire_ = 0, last_corner_ = 0, last_table_ = 0, last_faces_ = 0, last_group_ = 0;
+  std::uint32_t last_chart_ = 0, last_wire_ = 0, last_corner_ = 0, last_table_ = 0, last_faces_ = 0, last_group_ = 0,
+                last_closed_ = 0;
 
   AdaptiveUnsigned counts_, loop_count_, step_count_, rank_, start_position_, crowd_position_, corner_back_,
-      inner_points_, beyond_, layer_count_;
+      inner_points_, beyond_, layer_count_, loop_piece_;
   std::array<AdaptiveUnsigned, 3> outside_count_;
   AdaptiveBit next_chart_, next_wire_, next_corner_, new_wire_, new_reversed_, known_reversed_, new_corner_, empty_box_,
-      same_group_;
-  AdaptiveSigned chart_jump_, wire_jump_, group_, corner_jump_, table_, faces_, inner_, layer_, outside_;
+      same_group_, one_piece_;
+  AdaptiveSigned chart_jump_, wire_jump_, group_, corner_jump_, table_, faces_, inner_, layer_, outside_, closed_;
   std::array<AdaptiveSigned, 3> corner_, free_lo_, free_hi_;
 };
 

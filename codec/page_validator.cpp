@@ -85,6 +85,18 @@ class Validator {
       }
       require(at == start_of(loop.front()), "a loop does not close");
     }
+    check_pieces(chart);
+  }
+
+  void check_pieces(const PageChart& chart) const {
+    require(chart.pieces.of_loop.size() == chart.loops.size(), "a loop is of no piece");
+    std::uint32_t pieces = 0;
+    for (const std::uint32_t piece : chart.pieces.of_loop) {
+      require(piece <= pieces, "pieces are not numbered by their loops");
+      pieces += piece == pieces;
+    }
+    const std::uint64_t all = std::uint64_t{pieces} + chart.pieces.closed;
+    require(all <= chart.faces && (all > 0) == (chart.faces > 0), "a chart has other faces than its pieces");
   }
 
   const PageWire& wire(WireId id) const {

@@ -43,8 +43,6 @@ MeshRecord extreme_record() {
                                  &record.charts,
                                  &record.wires,
                                  &record.corners,
-                                 &record.components,
-                                 &record.boundary_loops,
                                  &record.nonmanifold_edges,
                                  &record.nonmanifold_vertices,
                                  &record.isolated_vertices,

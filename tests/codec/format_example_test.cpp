@@ -53,7 +53,8 @@ TEST(FormatExample, Wire) {
 
 TEST(FormatExample, LeafPage) {
   LeafPage page;
-  PageChart chart{ChartId(1), VersionId(1), TableId(), 4, 1, {{0, 0, 0}, {10, 10, 4}}, {{{WireId(1), false}}}, {}};
+  PageChart chart{ChartId(1), VersionId(1), TableId(), 4, 1, {{0, 0, 0}, {10, 10, 4}}, {{{WireId(1), false}}},
+                  {},         {{0}, 0}};
   page.charts.push_back(chart);
   page.wires.push_back({WireId(1), VersionId(1), WireId(1), CornerId(1), CornerId(1), 3, {ChartId(1)}});
   page.corners.push_back({CornerId(1), {0, 0, 0}});

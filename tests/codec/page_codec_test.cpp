@@ -154,6 +154,11 @@ TEST(PageRules, LeafPages) {
           {"a loop names a wire that is not there", [](LeafPage& p) { p.charts[3].loops[0][1].wire = WireId(99999); }},
           {"a loop has a gap", [](LeafPage& p) { p.charts[3].loops[0][1].reversed ^= true; }},
           {"a loop does not close", [](LeafPage& p) { p.charts[3].loops[0].pop_back(); }},
+          {"a loop is of no piece", [](LeafPage& p) { p.charts[3].pieces.of_loop.clear(); }},
+          {"pieces are not numbered by their loops", [](LeafPage& p) { p.charts[3].pieces.of_loop[0] = 1; }},
+          {"a chart has other faces than its pieces", [](LeafPage& p) { p.charts[3].faces = 0; }},
+          {"a chart has other faces than its pieces",
+           [](LeafPage& p) { p.charts[3].pieces.closed = p.charts[3].faces; }},
           {"layers are out of order",
            [](LeafPage& p) {
              p.charts[3].layers = {{2, {}}, {2, {}}};
@@ -202,15 +207,15 @@ TEST(PageCodec, GoldenBytes) {
   EXPECT_EQ(testing::hex(encode_page(LeafPage{})), "110000000080");
   EXPECT_EQ(testing::hex(encode_page(testing::quad_page(3, 2, 9))),
             "11000000035a07aabe41c005d918ed961707b61c50a3f65249e72d34a98ee47177706bc0a8bb5684dc306594e4f29b5eec28"
-            "c3c0739c4afa25aa9498130fc68340f446d719a8a667576bb5da490f58e5d66372440cf43259c3261e");
+            "c3bfc4ae924dc1d8e2731820be5ef5005a41ee3478c68e060203aec9b4d3d74c40fc497c6f7e2429fb");
   const auto hex_of = [](std::string_view wanted) {
     for (const auto& [name, page] : pages())
       if (name == wanted) return testing::hex(encode_page(page));
     return std::string();
   };
   EXPECT_EQ(hex_of("odd leaf"),
-            "110000038426a7fe80905828425c6933da6c788d118576638985d3450c4580522d0d019c541033df656e58132f1261635899"
-            "34a587d322f13d60497b51ba19bd9ec9f4437fcbe8ba4211ba9625");
+            "110000038426a7fe80905828425c6933da6c788d118576638985d30eaf2860795374a249214272ef3a739382298d878f5b9e"
+            "98201017a5b5a08532a2b7e82d5d196e2f102a5cc977d647c7a2f4713b0a6a");
   EXPECT_EQ(hex_of("extreme inner page"),
             "12ffffffff3e32c079c1cf4eef7fe9070ad8bcb72bff57a4e222d271bffc505c50f7125b7fef32afb3c5cf75ffe01ac7aed3"
             "15c5ffb90e40001a9aa800079dbe4502c421720a000652802993435dbb4247ecf8e299963a4519964e38316f64a2282b7fe9"

@@ -36,6 +36,7 @@ class PageMaker {
         chart.box.add(corners_.at(wire.end));
       }
     }
+    chart.pieces = {std::vector<std::uint32_t>(loops.size(), 0), loops.empty()};
     page_.charts.push_back(chart);
     return page_.charts.back();
   }
@@ -78,11 +79,12 @@ LeafPage odd_page() {
   maker.wire(9, 70, 70, 2);
   maker.wire(kLargest, 70, 2, 4);
   maker.chart(4, {{1}, {9}}).layers = {{0, VersionId(2)}, {7, VersionId(1)}, {65535, VersionId(800)}};
-  maker.chart(5, {{2, -3}, {-1}, {-9}});
+  maker.chart(5, {{2, -3}, {-1}, {-9}}).pieces = {{0, 1, 0}, 3};
   maker.chart(6, {{2, -2}});  // a slit
   maker.chart(7, {{2, -3, 2, -std::int64_t{kLargest}, 9, kLargest, -3}}).inner_vertices = 3;
   maker.chart(8, {}).box = {{-1, -2, -3}, {4, 5, 6}};
-  maker.chart(9, {});
+  PageChart& hollow = maker.chart(9, {});
+  hollow.faces = hollow.pieces.closed = 0;
   maker.also_passed_by(3, 1);
   maker.also_passed_by(3, 1);
   maker.also_passed_by(3, kLargest);
@@ -102,6 +104,7 @@ LeafPage extreme_page() {
   chart.faces = kLargest;
   chart.inner_vertices = kLargest;
   chart.layers = {{65535, VersionId(0)}};
+  chart.pieces = {{0, 1}, kLargest - 2};
   PageChart& small = maker.chart(1, {});
   small.version = VersionId(0);
   small.faces = 1u << 31;

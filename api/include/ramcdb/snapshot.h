@@ -59,7 +59,7 @@ class Snapshot {
 
   [[nodiscard]] VersionId version() const;
   [[nodiscard]] const Lattice& lattice() const;
-  /// Reads all leaf pages for the spread of chart sizes, no charts.
+  /// Reads all leaf pages for the spread of chart sizes, components and boundary loops; no charts.
   [[nodiscard]] MeshInfo info() const;
 
   /// The region's charts, ascending. Reads index pages only, and only those whose box the region meets; `NearestTo`

@@ -23,6 +23,15 @@ struct LayerRef {
   friend bool operator==(const LayerRef&, const LayerRef&) = default;
 };
 
+/// How the faces of a chart hang together by vertices of the chart, several of which may be one vertex of the mesh: the
+/// corners and wires around a chart tell of that.
+struct ChartPieces {
+  std::vector<std::uint32_t> of_loop;  ///< per loop its piece; pieces are numbered as loops first name them
+  std::uint32_t closed = 0;            ///< pieces without a loop
+
+  friend bool operator==(const ChartPieces&, const ChartPieces&) = default;
+};
+
 struct PageChart {
   ChartId id;
   VersionId version;  ///< the version that wrote the chart's geometry blob
@@ -32,6 +41,7 @@ struct PageChart {
   LatticeBox box;  ///< exact box of all its vertices, border included
   std::vector<WireLoop> loops;
   std::vector<LayerRef> layers;  ///< ascending by layer
+  ChartPieces pieces;
 
   friend bool operator==(const PageChart&, const PageChart&) = default;
 };
