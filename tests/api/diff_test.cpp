@@ -63,7 +63,7 @@ Compared commit_and_compare(TempRepository& repository, EditTransaction& edit) {
   Compared compared{edit.status(), {}};
   const Snapshot before = edit.base();
   (void)edit.commit(message("edit"));
-  compared.diff = repository->diff(before, repository->snapshot());
+  compared.diff = repository->diff(before, repository->snapshot(before.info().mesh));
   expect_equal(compared.status, compared.diff);
   return compared;
 }
