@@ -230,8 +230,10 @@ class Measurement {
       ChartChange& of = out_.per_chart[chart];
       const Point a = minus(at[t[0]], middle), b = minus(at[t[1]], middle), c = minus(at[t[2]], middle);
       const Point normal = cross(minus(b, a), minus(c, a));
-      (sign < 0 ? of.area_before : of.area_after) += std::sqrt(dot(normal, normal)) / 2;
+      const double area = std::sqrt(dot(normal, normal)) / 2;
+      if (sign < 0) of.area_before += area;
       if (!changes) return;
+      of.area_after += sign * area;
       *of.volume_change += sign * dot(a, cross(b, c)) / 6;
       border.add(chart, names, sign);
     };
@@ -250,7 +252,8 @@ class Measurement {
 
   void sum_up(BorderOfChange& border) {
     ChangeFigures& total = out_.total;
-    for (const ChartChange& of : out_.per_chart) {
+    for (ChartChange& of : out_.per_chart) {
+      of.area_after += of.area_before;  // so far the difference: what stays does not blur it
       total.area_before += of.area_before;
       total.area_after += of.area_after;
       *total.volume_change += *of.volume_change;

@@ -62,7 +62,7 @@ const char* class_text(ChangeClass change_class) {
 
 std::string figures_text(const ChangeFigures& figures, const std::vector<ChartChange>& charts) {
   if (figures.clean() && charts.empty()) return "";
-  std::string text = "charts            " + grouped(charts.size()) + "\n" + charts_text(charts);
+  std::string text = "charts touched    " + grouped(charts.size()) + "\n" + charts_text(charts);
   const auto line = [&](const char* title, std::uint64_t count) {
     if (count) text += title + grouped(count) + "\n";
   };

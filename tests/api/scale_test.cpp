@@ -1,3 +1,4 @@
+#include <chrono>
 #include <random>
 
 #include "tests/api/numbered_edits.h"
@@ -45,6 +46,32 @@ TEST(Scale, OneChartOfAMillionFacesCostsWhatOneOfFiftyThousandDoes) {
   EXPECT_LE(large.read.bytes, 2 * small.read.bytes);
   EXPECT_LE(large.read.pages, 4U);
   EXPECT_LE(large.written, 2 * small.written);
+}
+
+TEST(Scale, VersionsOfAMillionFacesThatDifferInOneChartAreComparedByIt) {
+  TempRepository repository(terrain(707, 707), 5000, 12);
+  const Snapshot before = repository->snapshot();
+  auto edit = repository->begin_edit();
+  Patch& patch = edit.checkout({{OfCharts{{ChartId(40)}}}, 0});
+  for (const auto f : patch.mesh().all_faces()) {
+    bool inside = true;
+    for (const auto v : patch.mesh().fv_range(f)) inside = inside && !patch.on_outer_border(v);
+    if (!inside) continue;
+    patch.mesh().split(f, patch.mesh().calc_face_centroid(f));
+    break;
+  }
+  (void)edit.commit(message("one"));
+  const auto start = std::chrono::steady_clock::now();
+  const DiffReport diff = repository->diff(before, repository->snapshot());
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  std::printf("diff of 1 M faces: %.1f ms, %llu bytes in %llu blobs, %llu of them pages\n", 1e3 * seconds,
+              static_cast<unsigned long long>(diff.bytes_read), static_cast<unsigned long long>(diff.blobs_read),
+              static_cast<unsigned long long>(diff.pages_read));
+  EXPECT_EQ(diff.faces_added, 3U);
+  EXPECT_EQ(diff.vertices_added, 1U);
+  EXPECT_EQ(diff.changed, std::vector{ChartId(40)});
+  EXPECT_LE(diff.pages_read, 8U);
+  EXPECT_LE(diff.blobs_read, 40U);
 }
 
 TEST(Scale, TheStoreCostsLittleOverItsBlobs) {

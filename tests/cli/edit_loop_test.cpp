@@ -88,6 +88,50 @@ TEST_F(EditLoop, EditedVertexComesBackInTheNextVersion) {
   expect_done(run_ramcdb({"verify", repo_}));
 }
 
+/// Takes the last face out of a checked-out text PLY.
+void drop_last_face(const std::string& file) {
+  std::string ply = read_text(file);
+  const std::size_t at = ply.find("element face ") + 13, end = ply.find('\n', at);
+  ply.replace(at, end - at, std::to_string(std::stoi(ply.substr(at, end - at)) - 1));
+  ply.erase(ply.rfind('\n', ply.size() - 2) + 1);
+  write_text(file, ply);
+}
+
+TEST_F(EditLoop, FacesThatComeAndGoAreSaidChartByChart) {
+  const std::string file = path("all.ply");
+  expect_done(run_ramcdb({"checkout", repo_, "--all", "--ascii", "-o", file, "-q"}));
+  edit(file);
+  drop_last_face(file);
+  EXPECT_THAT(run_ramcdb({"status", file}).out,
+              AllOf(HasSubstr("faces removed     1"), HasSubstr("  re-meshed       1 ("), HasSubstr("  moved "),
+                    HasSubstr("volume            not comparable")));
+  const auto status = only_object(run_ramcdb({"status", file, "--json"}).out);
+  EXPECT_EQ(status["faces_removed"], 1);
+  EXPECT_TRUE(status["volume_change"].is_null());
+  EXPECT_EQ(status["notes"]["frame"], "");
+  const Outcome commit = run_ramcdb({"commit", file, "-m", "a hole"});
+  expect_done(commit);
+  EXPECT_THAT(commit.out, AllOf(HasSubstr("1 vertex moved"), HasSubstr("1 face removed")));
+  const auto diff = only_object(run_ramcdb({"diff", repo_, "1", "2", "--json"}).out);
+  EXPECT_EQ(diff["faces_removed"], 1);
+  EXPECT_EQ(diff["vertices_moved"], 1);
+}
+
+TEST_F(EditLoop, HeatmapsOfFilesAndVersions) {
+  const std::string file = checked_out("middle.ply");
+  edit(file);
+  const Outcome of_file = run_ramcdb({"diff", file, "--heatmap", path("heat.ply")});
+  expect_done(of_file);
+  EXPECT_THAT(of_file.out, HasSubstr("heat.ply: dark blue where nothing moved to yellow for 0.0"));
+  EXPECT_THAT(read_text(path("heat.ply")), AllOf(HasSubstr("uchar red"), HasSubstr("property float displacement")));
+  expect_failure(run_ramcdb({"diff", file, "--heatmap", file}), 1);
+  expect_failure(run_ramcdb({"diff", file, "--heatmap", path("heat.obj")}), 1);
+  expect_failure(run_ramcdb({"diff", file, "--all"}), 2);
+  expect_done(run_ramcdb({"commit", file, "-m", "lift", "-q"}));
+  expect_done(run_ramcdb({"diff", repo_, "1", "2", "--heatmap", path("heat.glb"), "--all"}));
+  EXPECT_THAT(read_text(path("heat.glb")), HasSubstr("COLOR_0"));
+}
+
 TEST_F(EditLoop, CommittedFileMayBeEditedOn) {
   const std::string file = checked_out("middle.ply");
   edit(file);
