@@ -272,7 +272,7 @@ CommitReport commit_edit(const PendingEdit& edit, const CommitOptions& options, 
     repeat_report(edit, *published, report);
   } else {
     publish_on_tip(
-        base, options, "commit", attempt,
+        base, options, edit.operation, attempt,
         [&](const Snapshot::Impl& tip) -> std::optional<EncodedEdit> {
           report.conflicts = common(charts_other_than(edit.parts, tip.pages(), {}), edit.changes.touched);
           if (!report.conflicts.empty()) return std::nullopt;

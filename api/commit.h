@@ -20,6 +20,7 @@ struct PendingEdit {
   EditedRegion edited;
   ChangeSet changes;
   FileNotes notes;
+  std::string operation = "commit";  ///< what the version's figures call it
   /// Whether charts outside the region may be cut anew where an edit leaves too small a one beside them.
   bool may_recut_outside = false;
 

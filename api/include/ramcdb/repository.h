@@ -18,6 +18,7 @@ namespace ramcdb {
 class EditTransaction;
 struct SmoothOptions;
 struct TransformOptions;
+struct DecimateOptions;
 
 /// Called now and then with the stage and the share of it that is done (0..1), from the calling thread. It may throw
 /// to cancel: the repository stays as it was.
@@ -52,6 +53,21 @@ struct ImportOptions {
   Progress progress;
 };
 
+struct CommitOptions {
+  std::string message;
+  std::string author;
+  std::string branch = "main";
+  unsigned threads = 1;
+  Progress progress;
+  bool ignore_locks = false;  ///< change charts that others than `author` have locked
+};
+
+struct ImportIntoOptions {
+  std::optional<bool> weld;  ///< as ImportOptions::weld
+  bool dry_run = false;      ///< do everything but code and write: the report says what would be added
+  CommitOptions commit;      ///< `message`: "import FILE" when empty
+};
+
 enum class Paint { none, chart, bits, version };
 
 struct FileOptions {
@@ -64,15 +80,6 @@ struct FileOptions {
   std::optional<LockOptions> lock;  ///< checkout: lock the charts first; the file's commit gives the lock back
   unsigned threads = 1;
   Progress progress;
-};
-
-struct CommitOptions {
-  std::string message;
-  std::string author;
-  std::string branch = "main";
-  unsigned threads = 1;
-  Progress progress;
-  bool ignore_locks = false;  ///< change charts that others than `author` have locked
 };
 
 struct RepackOptions {
@@ -153,6 +160,12 @@ class Repository {
 
   /// Adds the mesh of a file as one version. Throws invalid_argument for a file that cannot be taken whole.
   ImportReport import(const std::filesystem::path& file, const ImportOptions& options);
+  /// Adds the mesh of a file to a mesh at the tip of a branch, as new components on its lattice, and commits that as
+  /// one version; `mesh` may be empty where there is just one. Charts of small components may go into a chart nearby,
+  /// which is then coded anew; conflicts over that one come back in the report, with nothing written. Throws
+  /// limit_exceeded where the mesh's lattice does not reach, invalid_argument for a file that cannot be taken whole.
+  ImportIntoReport import_into(std::string_view mesh, const std::filesystem::path& file,
+                               const ImportIntoOptions& options);
 
   /// Writes a whole mesh; the format follows from the extension.
   CheckoutReport export_mesh(const Snapshot& snapshot, const std::filesystem::path& file,
@@ -179,6 +192,8 @@ class Repository {
   /// Moves a region by an affine map and commits, likewise. Charts outside that share vertices with it follow with
   /// these. Throws limit_exceeded where vertices would leave the lattice.
   CommitReport transform(std::string_view mesh, const Region& region, const TransformOptions& options);
+  /// Takes faces out of a region where that changes the surface least, and commits, likewise.
+  CommitReport decimate(std::string_view mesh, const Region& region, const DecimateOptions& options);
 
   [[nodiscard]] DiffReport diff(const Snapshot& from, const Snapshot& to, unsigned threads = 1) const;
 
