@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "api/commit.h"
@@ -137,6 +138,7 @@ double ratio_of(const DecimateOptions& options, std::size_t faces) {
 }  // namespace
 
 CommitReport Repository::decimate(std::string_view mesh, const Region& region, const DecimateOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
   (void)ratio_of(options, 1);
   (void)impl_->store_for_writing();
   const Snapshot base = snapshot(mesh, options.commit.branch);
@@ -149,8 +151,10 @@ CommitReport Repository::decimate(std::string_view mesh, const Region& region, c
   edit.edited = RegionDecimation(base, edit.region, ratio).run(options.commit.threads, options.commit.progress);
   edit.notes.values_interpolated = detail::interpolate_new(edit.region, edit.edited);
   edit.changes = detail::changes_of(base.impl(), edit.region, edit.edited);
-  return detail::commit_edit(edit, options.commit,
-                             detail::attempt_name(db::new_attempt_id(), options.commit.branch, edit));
+  CommitReport report = detail::commit_edit(edit, options.commit,
+                                            detail::attempt_name(db::new_attempt_id(), options.commit.branch, edit));
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return report;
 }
 
 }  // namespace ramcdb
