@@ -129,6 +129,7 @@ class Comparison {
     add_charts_at(changed);
     add_isolated();
     add_charts_of_new_faces();
+    if (set_.recut.empty()) set_.recut.insert(region_.charts.front());  // what is new has nothing to do with any
   }
 
   void refuse_outer(const std::vector<EdgeUse>& changed) const {
@@ -152,8 +153,6 @@ class Comparison {
   void add_isolated() {
     for (const std::uint32_t v : set_.vertices_gone)
       if (region_.keys[v].where == VertexKey::Where::chart) set_.recut.insert(ChartId(region_.keys[v].id));
-    if (set_.recut.empty() && set_.faces_new.empty() && !set_.vertices_new.empty())
-      set_.recut.insert(region_.charts.front());
   }
 
   /// Some chart that is cut anew has to know every vertex that a new face takes up.

@@ -34,7 +34,8 @@ struct ChangeSet {
   std::vector<std::uint32_t> faces_gone, vertices_gone;  ///< of the region
   std::vector<std::uint32_t> faces_new, vertices_new;    ///< of the edited mesh
   /// Charts that are to be cut anew: those that lose faces; for every vertex that new faces take up one chart that
-  /// knows it; and all charts at an edge where the number of faces changes.
+  /// knows it; and all charts at an edge where the number of faces changes. At
+  /// least one, where connectivity changes.
   std::set<ChartId> recut;
   std::set<ChartId> touched;  ///< charts of the region that hold anything that changes
 

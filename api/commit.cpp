@@ -317,7 +317,7 @@ void publish_on_tip(const Snapshot::Impl& base, const CommitOptions& options, st
 }
 
 CommitReport commit_edit(const PendingEdit& edit, const CommitOptions& options, const std::string& attempt,
-                         std::string_view operation, VersionId second_parent) {
+                         VersionId second_parent) {
   const auto start = std::chrono::steady_clock::now();
   const Snapshot::Impl& base = edit.base();
   CommitReport report;
@@ -329,7 +329,7 @@ CommitReport commit_edit(const PendingEdit& edit, const CommitOptions& options, 
     repeat_report(edit, *published, report);
   } else {
     publish_on_tip(
-        base, options, operation, attempt,
+        base, options, edit.operation, attempt,
         [&](const Snapshot::Impl& tip) -> std::optional<EncodedEdit> {
           report.conflicts = common(charts_other_than(edit.parts, tip.pages(), {}), edit.changes.touched);
           auto encoded =

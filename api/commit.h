@@ -20,6 +20,7 @@ struct PendingEdit {
   EditedRegion edited;
   ChangeSet changes;
   FileNotes notes;
+  std::string operation = "commit";  ///< what the version's figures call it
   /// Whether charts outside the region may be cut anew where an edit leaves too small a one beside them.
   bool may_recut_outside = false;
 
@@ -43,11 +44,9 @@ void compare_with_tip(ChangeReport& report, std::span<const RegionPart> parts, s
 /// Codes the edit on the branch's tip and publishes it (the commit protocol: db/FORMAT.md), again where the tip moves
 /// meanwhile. Nothing changed: nothing is written. Conflicts come back in the report, with nothing written.
 /// \param attempt from attempt_name(): a repeated commit is one commit.
-/// \param operation what the version's figures call it
 /// \param second_parent a version that the edit brings over; 0 for none
 [[nodiscard]] CommitReport commit_edit(const PendingEdit& edit, const CommitOptions& options,
-                                       const std::string& attempt, std::string_view operation = "commit",
-                                       VersionId second_parent = {});
+                                       const std::string& attempt, VersionId second_parent = {});
 
 /// A version of one mesh that is made from the tip of a branch: coded without the writer's lock, and with it where the
 /// tip moved twice meanwhile, so that it comes to an end.

@@ -96,6 +96,11 @@ Triangle aligned(const Triangle& now, const Triangle& was) {
 
 }  // namespace
 
+QuietOpenMesh::QuietOpenMesh() : was_enabled_(omerr().is_enabled()) { omerr().disable(); }
+QuietOpenMesh::~QuietOpenMesh() {
+  if (was_enabled_) omerr().enable();
+}
+
 DecimatedFaces decimate_faces(std::span<const Point> positions, std::span<const Triangle> faces,
                               const std::vector<bool>& locked, std::size_t target_faces) {
   Mesh mesh;

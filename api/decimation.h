@@ -17,6 +17,18 @@ struct DecimatedFaces {
   std::vector<std::uint32_t> kept;  ///< vertices that are still there, ascending; those without a face too
 };
 
+/// While it lives, OpenMesh does not write to the standard error which faces it does not take. All threads share this.
+class QuietOpenMesh {
+ public:
+  QuietOpenMesh();
+  ~QuietOpenMesh();
+  QuietOpenMesh(const QuietOpenMesh&) = delete;
+  QuietOpenMesh& operator=(const QuietOpenMesh&) = delete;
+
+ private:
+  bool was_enabled_;
+};
+
 /// Takes faces away where that changes the surface least, until `target_faces` are left or no more can go: OpenMesh's
 /// decimater, edges collapsed to one of their ends by quadric error, no face turned by more than 90 degrees. What stays
 /// keeps its place. A pure function: equal input gives equal output for one build.

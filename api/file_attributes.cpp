@@ -97,4 +97,12 @@ std::uint64_t take_values(const mesh_file::MeshData& file, const FilePlaces& pla
   return missing;
 }
 
+std::vector<const Attribute*> attributes_without_place(const mesh_file::MeshData& file, const RegionMesh& mesh) {
+  std::vector<const Attribute*> unused;
+  for (const Attribute& attribute : file.attributes)
+    if (std::ranges::none_of(mesh.attributes, [&](const Attribute& a) { return find_in(file, a.info) == &attribute; }))
+      unused.push_back(&attribute);
+  return unused;
+}
+
 }  // namespace ramcdb::detail

@@ -19,4 +19,8 @@ struct FilePlaces {
 /// colours are converted between bytes and 0..1. Returns how many attributes the file has nothing for.
 std::uint64_t take_values(const mesh_file::MeshData& file, const FilePlaces& places, RegionMesh& mesh);
 
+/// The attributes of a file that none of a mesh's would take values from.
+[[nodiscard]] std::vector<const Attribute*> attributes_without_place(const mesh_file::MeshData& file,
+                                                                     const RegionMesh& mesh);
+
 }  // namespace ramcdb::detail

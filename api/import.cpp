@@ -46,17 +46,6 @@ void refuse_taken(db::Store& store, VersionId tip, const std::string& name) {
                   fmt::format("version {}", tip.value), "choose another with --name");
 }
 
-mesh_file::MeshData read_file(const std::filesystem::path& file, const ImportOptions& options, ImportReport& report) {
-  mesh_file::MeshData data = mesh_file::read_mesh(file, stage(options.progress, "read"));
-  if (options.weld.value_or(data.soup)) {
-    const std::size_t before = data.positions.size();
-    mesh_file::weld_exact(data);
-    report.vertices_welded = before - data.positions.size();
-  }
-  for (const auto& dropped : data.dropped) report.dropped.push_back({dropped.what, dropped.count});
-  return data;
-}
-
 /// Snaps every position, and measures how far the farthest moved along an axis: none, where all come back as the
 /// numbers of `type` that they were. The file's positions become lattice points too, so that polygons are cut by these:
 /// the same however often a mesh goes out and in.
@@ -179,6 +168,19 @@ void refuse_taken_name(db::Store& store, const ImportOptions& options, const std
   refuse_taken(store, base_of(store, options.branch), mesh_name(file, options));
 }
 
+mesh_file::MeshData read_file_whole(const std::filesystem::path& file, std::optional<bool> weld,
+                                    const Progress& progress, std::uint64_t& welded,
+                                    std::vector<ImportReport::Dropped>& dropped) {
+  mesh_file::MeshData data = mesh_file::read_mesh(file, stage(progress, "read"));
+  if (weld.value_or(data.soup)) {
+    const std::size_t before = data.positions.size();
+    mesh_file::weld_exact(data);
+    welded = before - data.positions.size();
+  }
+  for (const auto& left_out : data.dropped) dropped.push_back({left_out.what, left_out.count});
+  return data;
+}
+
 ImportReport import_mesh(db::Store& store, const std::filesystem::path& file, const ImportOptions& options,
                          std::string& name) {
   const auto start = std::chrono::steady_clock::now();
@@ -186,7 +188,8 @@ ImportReport import_mesh(db::Store& store, const std::filesystem::path& file, co
   name = mesh_name(file, options);
   refuse_taken(store, base_of(store, options.branch), name);
   MeshRecord record;
-  mesh_file::MeshData data = read_file(file, options, report);
+  mesh_file::MeshData data =
+      read_file_whole(file, options.weld, options.progress, report.vertices_welded, report.dropped);
   const NumberType type = type_of(data.positions);
   record.lattice = choose_lattice(data.positions, type, options);
   record.profile = options.profile == ChartProfile::fast ? codec::Profile::fast : codec::Profile::dense;

@@ -2,7 +2,10 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <vector>
 
+#include "api/mesh_file/mesh_file.h"
 #include "db/store.h"
 #include "ramcdb/repository.h"
 
@@ -10,6 +13,12 @@ namespace ramcdb::detail {
 
 /// Throws invalid_argument when the branch holds a mesh of the name that the import would give.
 void refuse_taken_name(db::Store& store, const ImportOptions& options, const std::filesystem::path& file);
+
+/// A file's mesh; vertices at equal positions are one if `weld`, or if that is not said and it is a soup.
+/// \param welded gets the number of vertices less  \param dropped gets what the file holds beside
+[[nodiscard]] mesh_file::MeshData read_file_whole(const std::filesystem::path& file, std::optional<bool> weld,
+                                                  const Progress& progress, std::uint64_t& welded,
+                                                  std::vector<ImportReport::Dropped>& dropped);
 
 /// file -> lattice -> canonical order -> charts -> wire-net -> blobs -> one version. The hops are the functions that
 /// import.cpp calls, in this order. The report's `info` is left to the caller, who has the snapshot.

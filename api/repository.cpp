@@ -7,6 +7,7 @@
 #include "api/checkout.h"
 #include "api/diff.h"
 #include "api/import.h"
+#include "api/import_into.h"
 #include "api/locks.h"
 #include "api/region_log.h"
 #include "api/repack.h"
@@ -177,6 +178,12 @@ ImportReport Repository::import(const std::filesystem::path& file, const ImportO
   ImportReport report = detail::import_mesh(*store, file, options, name);
   report.info = snapshot(name, options.branch).info();
   return report;
+}
+
+ImportIntoReport Repository::import_into(std::string_view mesh, const std::filesystem::path& file,
+                                         const ImportIntoOptions& options) {
+  if (!options.dry_run) (void)impl_->store_for_writing();
+  return detail::import_into(snapshot(mesh, options.commit.branch), file, options);
 }
 
 CheckoutReport Repository::export_mesh(const Snapshot& snapshot, const std::filesystem::path& file,

@@ -198,8 +198,9 @@ CommitReport carry_over(const Snapshot::Impl& base, const Snapshot::Impl& theirs
                         std::string_view operation, VersionId second_parent) {
   CommitOptions merging = options;
   merging.merge = true;
-  return commit_edit(edit_between(base, theirs, options.threads), merging, db::new_attempt_id(), operation,
-                     second_parent);
+  PendingEdit edit = edit_between(base, theirs, options.threads);
+  edit.operation = operation;
+  return commit_edit(edit, merging, db::new_attempt_id(), second_parent);
 }
 
 MergeReport merge_version(const std::shared_ptr<db::Store>& store, VersionId theirs, const CommitOptions& options) {

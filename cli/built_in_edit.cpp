@@ -15,6 +15,15 @@
 namespace ramcdb::cli {
 namespace {
 
+std::optional<double> number_of(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
 std::string moved_text(const CommitReport& report) {
   if (report.nothing_changed) return "no vertex moved by as much as a lattice step: no version written\n";
   std::string text = version_text(report.revision) + " after " + version_text(report.parent) + ": " +
@@ -28,16 +37,7 @@ std::string moved_text(const CommitReport& report) {
   return text;
 }
 
-std::optional<double> number_of(std::string_view text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
-}  // namespace
-
-void add_built_in_edit(CLI::App& verb, BuiltInEdit& edit) {
+void add_region_edit(CLI::App& verb, BuiltInEdit& edit) {
   add_repository(verb, edit.folder);
   add_region(verb, edit.region);
   add_mesh(verb, edit.which);
@@ -45,17 +45,22 @@ void add_built_in_edit(CLI::App& verb, BuiltInEdit& edit) {
   add_author(verb, edit.commit.author);
   verb.add_option("--branch", edit.commit.branch, "The branch to edit and commit to (default: main)")
       ->type_name("NAME");
-  add_memory(verb, edit.memory);
   add_threads(verb, edit.commit.threads);
   add_output_mode(verb, edit.mode);
 }
 
-int finish_built_in_edit(const CommitReport& report, const OutputMode& mode, std::string_view verb) {
+void add_built_in_edit(CLI::App& verb, BuiltInEdit& edit) {
+  add_region_edit(verb, edit);
+  add_memory(verb, edit.memory);
+}
+
+int finish_built_in_edit(const CommitReport& report, const OutputMode& mode, std::string_view verb,
+                         std::string (*text)(const CommitReport&)) {
   const bool conflict = !report.conflicts.empty();
   if (mode.json)
     say(commit_json(report));
   else if (!mode.quiet && !conflict)
-    say(moved_text(report));
+    say(text(report));
   if (!conflict) return kDone;
   complain("others changed " + std::string(report.conflicts.size() == 1 ? "chart " : "charts ") +
            chart_list(report.conflicts) + " meanwhile, nothing was written: repeat the " + std::string(verb));

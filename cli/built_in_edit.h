@@ -21,11 +21,17 @@ struct BuiltInEdit {
   OutputMode mode;
 };
 
-/// REPO, REGION, -m and the options of commits, --memory.
+/// REPO, REGION, -m and the options of commits.
+void add_region_edit(CLI::App& verb, BuiltInEdit& edit);
+/// The same, and --memory.
 void add_built_in_edit(CLI::App& verb, BuiltInEdit& edit);
+/// Of an edit that moved vertices.
+[[nodiscard]] std::string moved_text(const CommitReport& report);
 
 /// Prints the report of an edit; returns the exit code. \param verb what to repeat after a conflict
-[[nodiscard]] int finish_built_in_edit(const CommitReport& report, const OutputMode& mode, std::string_view verb);
+/// \param text the report for people
+[[nodiscard]] int finish_built_in_edit(const CommitReport& report, const OutputMode& mode, std::string_view verb,
+                                       std::string (*text)(const CommitReport&) = moved_text);
 
 /// Finite numbers separated by commas or blanks. Throws UsageError unless there are as many as one of `counts` says.
 /// \param form what was expected, as the option's help has it

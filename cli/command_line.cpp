@@ -31,6 +31,7 @@ void add_verbs(CLI::App& app, Run& run) {
   setup_commit(app, run);
   setup_smooth(app, run);
   setup_transform(app, run);
+  setup_decimate(app, run);
   setup_log(app, run);
   setup_show(app, run);
   setup_export(app, run);

@@ -20,6 +20,7 @@ namespace {
 struct ImportCommand {
   std::string folder, file;
   std::string lattice_of;  ///< a mesh of the repository, or empty
+  std::string into;        ///< likewise
   std::string chartify = "refined";
   std::string profile = "dense";
   ImportOptions options;
@@ -87,7 +88,56 @@ double size_of(const std::filesystem::path& file) {
   return ignored ? 0 : static_cast<double>(size);
 }
 
+std::string report_text(const ImportIntoReport& report, const std::string& into) {
+  const CommitReport& commit = report.commit;
+  std::string text = one_line(into) + ": " + counted(report.vertices, "vertex", "vertices") + " and " +
+                     counted(report.faces, "face") + " added, " +
+                     (commit.revision ? "now version " + version_text(commit.revision) : "nothing was written") + "\n";
+  if (report.polygons > 0)
+    text += "kept     " + counted(report.polygons, "polygon") + ", coded as triangles" +
+            (report.polygons_as_fans ? ", " + grouped(report.polygons_as_fans) + " of them as fans" : "") + "\n";
+  if (report.vertices_welded > 0)
+    text += "changed  " + counted(report.vertices_welded, "corner") + " at equal positions joined\n";
+  if (commit.notes.attributes_missing > 0)
+    text += "absent   " + counted(commit.notes.attributes_missing, "attribute") + " of the mesh, in what was added\n";
+  for (const auto& dropped : report.dropped)
+    text += "dropped  " + one_line(dropped.what) + " (" + grouped(dropped.count) + ")\n";
+  text += report.measured_error > 0
+              ? "error    " + model_units(report.measured_error) + " along each axis, measured, in model units\n"
+              : std::string("error    none, all positions are those of the file\n");
+  if (commit.revision)
+    text += "stored   " + counted(commit.charts_added, "new chart") + " (" +
+            counted(commit.charts_reencoded - commit.charts_added, "other chart") + " coded anew), " +
+            counted(commit.bytes_written, "byte") + "\n";
+  return text + "time     " + duration(commit.seconds) + "\n";
+}
+
+int run_import_into(const ImportCommand& command) {
+  ImportIntoOptions options;
+  options.weld = command.options.weld;
+  options.dry_run = command.options.dry_run;
+  options.commit.message = command.options.message;
+  options.commit.author = command.options.author;
+  options.commit.branch = command.options.branch;
+  options.commit.threads = command.options.threads;
+  Repository repository = Repository::open(command.folder);
+  ImportIntoReport report;
+  {
+    ProgressBar bar("import", command.mode.quiet, size_of(command.file));
+    options.commit.progress = bar.callback();
+    report = repository.import_into(command.into, command.file, options);
+  }
+  if (command.mode.json)
+    say(import_into_json(report));
+  else if (!command.mode.quiet && report.commit.conflicts.empty())
+    say(report_text(report, command.into));
+  if (report.commit.conflicts.empty()) return kDone;
+  complain("others changed charts meanwhile, nothing was written: repeat the import");
+  return kConflict;
+}
+
 int run_import(const ImportCommand& command) {
+  if (!command.into.empty()) return run_import_into(command);
   Repository repository = Repository::open(command.folder);
   ImportOptions options = command.options;
   if (!command.lattice_of.empty()) options.lattice = repository.snapshot(command.lattice_of).lattice();
@@ -157,6 +207,12 @@ void setup_import(CLI::App& app, Run& run) {
   verb.add_flag("--dry-run", command->options.dry_run, "Report what would be found and stored, and write nothing");
   verb.add_flag("--lossless-attributes", command->options.lossless_attributes,
                 "Keep colours, normals and texture coordinates that are floats bit by bit");
+  CLI::Option* into = verb.add_option(
+      "--into", command->into, "Add it to this mesh as new components, on the mesh's lattice, instead of as a mesh");
+  into->type_name("MESH");
+  for (const char* other : {"--name", "--bits", "--precision", "--lossless", "--lattice-of", "--chart-faces",
+                            "--chartify", "--profile", "--lossless-attributes"})
+    into->excludes(verb.get_option(other));
   add_message(verb, command->options.message, false);
   verb.add_option("--branch", command->options.branch,
                   "The branch to publish on; one that is not there yet begins from main (default: main)")

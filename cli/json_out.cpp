@@ -229,6 +229,35 @@ Json of(const std::vector<MergeConflict>& conflicts) {
   return places;
 }
 
+Json of(const CommitReport& report) {
+  return {{"revision", report.revision.value},
+          {"parent", report.parent.value},
+          {"charts_touched", report.charts_touched},
+          {"charts_reencoded", report.charts_reencoded},
+          {"charts_added", report.charts_added},
+          {"charts_removed", report.charts_removed},
+          {"wires_reencoded", report.wires_reencoded},
+          {"ranges_expanded", report.ranges_expanded},
+          {"vertices_moved", report.vertices_moved},
+          {"vertices_added", report.vertices_added},
+          {"vertices_removed", report.vertices_removed},
+          {"max_displacement", report.max_displacement},
+          {"bytes_written", report.bytes_written},
+          {"seconds", report.seconds},
+          {"values_changed", report.values_changed},
+          {"layers_reencoded", report.layers_reencoded},
+          {"nothing_changed", report.nothing_changed},
+          {"conflicts", of(report.conflicts)},
+          {"merged", report.merged},
+          {"conflict_places", of(report.conflict_places)},
+          {"normals_left", report.normals_left},
+          {"faces_added", report.faces_added},
+          {"faces_removed", report.faces_removed},
+          {"added", of(report.added)},
+          {"removed", of(report.removed)},
+          {"notes", of(report.notes)}};
+}
+
 }  // namespace
 
 std::string init_json(const std::filesystem::path& folder, const std::string& id) {
@@ -303,35 +332,6 @@ std::string diff_json(const DiffReport& report) {
   return printed(json);
 }
 
-std::string commit_json(const CommitReport& report) {
-  return printed({{"revision", report.revision.value},
-                  {"parent", report.parent.value},
-                  {"charts_touched", report.charts_touched},
-                  {"charts_reencoded", report.charts_reencoded},
-                  {"charts_added", report.charts_added},
-                  {"charts_removed", report.charts_removed},
-                  {"wires_reencoded", report.wires_reencoded},
-                  {"ranges_expanded", report.ranges_expanded},
-                  {"vertices_moved", report.vertices_moved},
-                  {"vertices_added", report.vertices_added},
-                  {"vertices_removed", report.vertices_removed},
-                  {"max_displacement", report.max_displacement},
-                  {"bytes_written", report.bytes_written},
-                  {"seconds", report.seconds},
-                  {"values_changed", report.values_changed},
-                  {"layers_reencoded", report.layers_reencoded},
-                  {"nothing_changed", report.nothing_changed},
-                  {"conflicts", of(report.conflicts)},
-                  {"merged", report.merged},
-                  {"conflict_places", of(report.conflict_places)},
-                  {"normals_left", report.normals_left},
-                  {"faces_added", report.faces_added},
-                  {"faces_removed", report.faces_removed},
-                  {"added", of(report.added)},
-                  {"removed", of(report.removed)},
-                  {"notes", of(report.notes)}});
-}
-
 std::string merge_json(const MergeReport& report) {
   return printed({{"revision", report.revision.value},
                   {"parent", report.parent.value},
@@ -345,6 +345,21 @@ std::string merge_json(const MergeReport& report) {
                   {"conflicts", of(report.commit.conflicts)},
                   {"conflict_places", of(report.commit.conflict_places)},
                   {"seconds", report.seconds}});
+}
+
+std::string commit_json(const CommitReport& report) { return printed(of(report)); }
+
+std::string import_into_json(const ImportIntoReport& report) {
+  Json json = of(report.commit);
+  json["vertices"] = report.vertices;
+  json["faces"] = report.faces;
+  json["dropped"] = of(report.dropped);
+  json["polygons"] = report.polygons;
+  json["polygons_as_fans"] = report.polygons_as_fans;
+  json["vertices_welded"] = report.vertices_welded;
+  json["measured_error"] = report.measured_error;
+  json["attributes_missing"] = report.commit.notes.attributes_missing;
+  return printed(json);
 }
 
 std::string repack_json(const RepackReport& report) {

@@ -26,6 +26,8 @@ namespace ramcdb::cli {
 [[nodiscard]] std::string diff_json(const DiffReport& report);
 [[nodiscard]] std::string commit_json(const CommitReport& report);
 [[nodiscard]] std::string merge_json(const MergeReport& report);
+/// Of `import --into`: that of a commit, and what was found.
+[[nodiscard]] std::string import_into_json(const ImportIntoReport& report);
 [[nodiscard]] std::string repack_json(const RepackReport& report);
 [[nodiscard]] std::string log_json(const std::vector<VersionRecord>& versions);
 [[nodiscard]] std::string show_json(const VersionRecord& version);

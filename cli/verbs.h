@@ -25,6 +25,7 @@ void setup_diff(CLI::App& app, Run& run);
 void setup_commit(CLI::App& app, Run& run);
 void setup_smooth(CLI::App& app, Run& run);
 void setup_transform(CLI::App& app, Run& run);
+void setup_decimate(CLI::App& app, Run& run);
 void setup_log(CLI::App& app, Run& run);
 void setup_show(CLI::App& app, Run& run);
 void setup_export(CLI::App& app, Run& run);

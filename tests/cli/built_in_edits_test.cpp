@@ -67,6 +67,44 @@ TEST_F(BuiltInEdits, TransformFadesOut) {
   EXPECT_EQ(corner["charts"][0]["version"], 1);
 }
 
+TEST_F(BuiltInEdits, DecimateTakesAShareOrANumber) {
+  const auto faces = [&] { return only_object(run_ramcdb({"info", repo_, "--json"}).out)["faces"].get<int>(); };
+  const int before = faces();
+  const Outcome outcome = run_ramcdb({"decimate", repo_, "--all", "--ratio", "0.7", "-m", "coarser"});
+  expect_done(outcome);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("v2 after v1"), HasSubstr(" less in "), HasSubstr("merged with others")));
+  EXPECT_NEAR(faces(), before * 0.7, before * 0.05);
+  const auto report = only_object(
+      run_ramcdb({"decimate", repo_, "--all", "--faces", std::to_string(before / 2), "-m", "x", "--json"}).out);
+  EXPECT_EQ(report["revision"], 3);
+  EXPECT_NEAR(faces(), before / 2, before * 0.05);
+  EXPECT_THAT(run_ramcdb({"decimate", repo_, "--all", "--ratio", "1", "-m", "x"}).out, HasSubstr("no version written"));
+  expect_failure(run_ramcdb({"decimate", repo_, "--all", "--ratio", "2", "-m", "x"}), 2);
+  expect_failure(run_ramcdb({"decimate", repo_, "--all", "--ratio", "0.5", "--faces", "3", "-m", "x"}), 2);
+  expect_done(run_ramcdb({"verify", repo_, "-q"}));
+}
+
+TEST_F(BuiltInEdits, ImportIntoAMesh) {
+  const auto before = only_object(run_ramcdb({"info", repo_, "--json"}).out);
+  const std::string mesh = before["mesh"], file = repo_ + ".more.ply";
+  expect_done(run_ramcdb({"export", repo_, "-o", file}));
+  const Outcome tried = run_ramcdb({"import", repo_, file, "--into", mesh, "--dry-run"});
+  expect_done(tried);
+  EXPECT_THAT(tried.out, AllOf(HasSubstr("added"), HasSubstr("nothing was written")));
+  const Outcome outcome = run_ramcdb({"import", repo_, file, "--into", mesh, "-m", "once more"});
+  expect_done(outcome);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("now version v2"), HasSubstr("error    none"), HasSubstr("new chart")));
+  const auto after = only_object(run_ramcdb({"info", repo_, "--json"}).out);
+  EXPECT_EQ(after["faces"], 2 * before["faces"].get<int>());
+  EXPECT_EQ(after["components"], before["components"].get<int>() + before["components"].get<int>());
+  const auto report = only_object(run_ramcdb({"import", repo_, file, "--into", mesh, "--json"}).out);
+  EXPECT_EQ(report["faces"], before["faces"]);
+  EXPECT_EQ(report["revision"], 3);
+  expect_failure(run_ramcdb({"import", repo_, file, "--into", mesh, "--bits", "12"}), 2);
+  expect_failure(run_ramcdb({"import", repo_, file, "--into", "nobody"}), 1);
+  expect_done(run_ramcdb({"verify", repo_, "-q"}));
+}
+
 TEST_F(BuiltInEdits, WrongUsage) {
   const Arguments smooth{"smooth", repo_, "-m", "x"};
   const auto expect_wrong = [](Arguments arguments, const Arguments& more) {

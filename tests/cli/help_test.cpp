@@ -11,9 +11,10 @@ using testing::HasSubstr;
 using testing::MatchesRegex;
 using testing::Not;
 
-const std::vector<std::string> kVerbs = {"init",   "import", "ls",    "info",   "charts", "checkout",  "status", "diff",
-                                         "commit", "log",    "show",  "export", "repack", "branch",    "tag",    "lock",
-                                         "unlock", "locks",  "merge", "revert", "smooth", "transform", "verify"};
+const std::vector<std::string> kVerbs = {"init",   "import", "ls",     "info",      "charts",   "checkout",
+                                         "status", "diff",   "commit", "log",       "show",     "export",
+                                         "repack", "branch", "tag",    "lock",      "unlock",   "locks",
+                                         "merge",  "revert", "smooth", "transform", "decimate", "verify"};
 
 /// The lines behind "Example:".
 std::vector<std::string> examples_in(const std::string& help) {

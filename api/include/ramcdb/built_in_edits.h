@@ -2,11 +2,12 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "ramcdb/repository.h"
 
-/// Edits that the library does itself, on regions of any size: a few charts are in memory at a time, what else there
-/// is lies in a temporary file in the repository's folder. Only vertices move.
+/// Edits that the library does itself. Smoothing and maps only move vertices, in regions of any size: a few charts are
+/// in memory at a time, what else there is lies in a temporary file in the repository's folder.
 namespace ramcdb {
 
 /// Laplacian smoothing with uniform weights, as OpenMesh's smoother does it: in every iteration each vertex goes
@@ -43,6 +44,17 @@ struct TransformOptions {
   /// spheres, points (NearestTo) and the whole mesh.
   double falloff = 0;
   std::uint64_t memory = std::uint64_t{1} << 30;  ///< bytes for what is held at a time, beside the index
+  CommitOptions commit;
+};
+
+/// Fewer faces: edges inside charts collapse to one of their ends where that changes the surface least (quadrics). What
+/// stays is where it was, with its values. Charts are decimated apart, each by its share, and all that charts share
+/// stays, as do the mesh's own border and non-manifold places; so a small share may not be reached. Charts that end up
+/// small are merged with others, which then can lose more in a second run. Polygons whose triangles change become
+/// triangles. Holds the region in memory.
+struct DecimateOptions {
+  double ratio = 0.5;                  ///< the share of faces (triangles) that is to stay, 0..1
+  std::optional<std::uint64_t> faces;  ///< instead: how many are to stay of the region's
   CommitOptions commit;
 };
 

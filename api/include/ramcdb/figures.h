@@ -210,6 +210,15 @@ struct MergeReport {
   double seconds = 0;
 };
 
+/// What an import into a mesh found and did.
+struct ImportIntoReport {
+  CommitReport commit;                         ///< `notes.attributes_missing`: of the mesh, absent in what was added
+  std::uint64_t vertices = 0, faces = 0;       ///< of the file; triangles
+  std::vector<ImportReport::Dropped> dropped;  ///< named and counted: what the file holds and the mesh has no place for
+  std::uint64_t polygons = 0, polygons_as_fans = 0, vertices_welded = 0;  ///< as ImportReport
+  double measured_error = 0;  ///< largest distance along an axis between file and mesh, model units
+};
+
 /// A mesh coded anew.
 struct RepackReport {
   VersionId revision;  ///< the new version; the tip when nothing changed

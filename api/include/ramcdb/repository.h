@@ -18,6 +18,7 @@ namespace ramcdb {
 class EditTransaction;
 struct SmoothOptions;
 struct TransformOptions;
+struct DecimateOptions;
 
 /// Called now and then with the stage and the share of it that is done (0..1), from the calling thread. It may throw
 /// to cancel: the repository stays as it was.
@@ -52,20 +53,6 @@ struct ImportOptions {
   Progress progress;
 };
 
-enum class Paint { none, chart, bits, version };
-
-struct FileOptions {
-  Paint paint = Paint::none;  ///< colour the faces (PLY, OFF); such a file is to look at and cannot be committed
-  bool ascii = false;         ///< PLY as text
-  bool overwrite = true;
-  /// Checkout: write coordinates relative to a point near the region, which the sidecar keeps and commit adds again?
-  /// When not said: where float32 (or in text formats six digits) cannot hold the coordinates, but can so.
-  std::optional<bool> local_origin;
-  std::optional<LockOptions> lock;  ///< checkout: lock the charts first; the file's commit gives the lock back
-  unsigned threads = 1;
-  Progress progress;
-};
-
 struct CommitOptions {
   std::string message;
   std::string author;
@@ -79,6 +66,26 @@ struct CommitOptions {
   /// A branch for this commit instead of `branch`: one that is not there yet begins at the version that the edit was
   /// made on, so that work that meets conflicts is never lost.
   std::string onto = {};
+};
+
+struct ImportIntoOptions {
+  std::optional<bool> weld;  ///< as ImportOptions::weld
+  bool dry_run = false;      ///< do everything but code and write: the report says what would be added
+  CommitOptions commit;      ///< `message`: "import FILE" when empty
+};
+
+enum class Paint { none, chart, bits, version };
+
+struct FileOptions {
+  Paint paint = Paint::none;  ///< colour the faces (PLY, OFF); such a file is to look at and cannot be committed
+  bool ascii = false;         ///< PLY as text
+  bool overwrite = true;
+  /// Checkout: write coordinates relative to a point near the region, which the sidecar keeps and commit adds again?
+  /// When not said: where float32 (or in text formats six digits) cannot hold the coordinates, but can so.
+  std::optional<bool> local_origin;
+  std::optional<LockOptions> lock;  ///< checkout: lock the charts first; the file's commit gives the lock back
+  unsigned threads = 1;
+  Progress progress;
 };
 
 struct DiffOptions {
@@ -131,10 +138,10 @@ class Repository {
 
   // Branches and tags: names for versions. A branch moves with what is committed on it, a tag stays. Names are as
   // git's: at most 200 bytes, no spaces, control characters, `~^:?*[\`, `..`; not HEAD, 17 or v17; and no branch and
-  // tag share one. Changes wait for the writer at work, are durable when they return, all or nothing, and cost no blob.
-  // They throw invalid_argument for a name that is none, is taken or is of the other kind, not_found, corrupt for a
-  // version that has lost its blobs, storage. Where they return versions, these are the ones that no name leads to any
-  // more, ascending: they stay, and can be had by number.
+  // tag share one. Changes wait for the writer at work, are durable when they return, all or nothing, and cost no
+  // blob. They throw invalid_argument for a name that is none, is taken or is of the other kind, not_found, corrupt
+  // for a version that has lost its blobs, storage. Where they return versions, these are the ones that no name leads
+  // to any more, ascending: they stay, and can be had by number.
 
   /// By name.
   [[nodiscard]] std::vector<Branch> branches() const;
@@ -168,20 +175,25 @@ class Repository {
 
   /// Adds the mesh of a file as one version. Throws invalid_argument for a file that cannot be taken whole.
   ImportReport import(const std::filesystem::path& file, const ImportOptions& options);
+  /// Adds the mesh of a file to a mesh at the tip of a branch, as new components on its lattice, and commits that as
+  /// one version; `mesh` may be empty where there is just one. Charts of small components may go into a chart nearby,
+  /// which is then coded anew; conflicts over that one come back in the report, with nothing written. Throws
+  /// limit_exceeded where the mesh's lattice does not reach, invalid_argument for a file that cannot be taken whole.
+  ImportIntoReport import_into(std::string_view mesh, const std::filesystem::path& file,
+                               const ImportIntoOptions& options);
 
   /// Writes a whole mesh; the format follows from the extension.
   CheckoutReport export_mesh(const Snapshot& snapshot, const std::filesystem::path& file,
                              const FileOptions& options) const;
 
-  /// Writes a region as an ordinary mesh file and its sidecar `FILE.ramcdb.json` beside it, from which commit_file and
-  /// status_file know where it came from.
-  /// `options.lock` locks the charts, as lock() does, before anything is written.
+  /// Writes a region as an ordinary mesh file and its sidecar `FILE.ramcdb.json` beside it, from which commit_file
+  /// and status_file know where it came from. `options.lock` locks the charts, as lock() does, before anything is
+  /// written.
   CheckoutReport checkout_file(const Snapshot& snapshot, const std::vector<ChartId>& charts,
                                const std::filesystem::path& file, const FileOptions& options) const;
 
-  /// What a checked-out file would change. Throws invalid_argument where its edges at charts outside the region are not
-  /// as they were.
-  /// \param heatmap not empty: a mesh to look at, as DiffOptions::heatmap, of the file's region
+  /// What a checked-out file would change. Throws invalid_argument where its edges at charts outside the region are
+  /// not as they were. \param heatmap not empty: a mesh to look at, as DiffOptions::heatmap, of the file's region
   [[nodiscard]] ChangeReport status_file(const std::filesystem::path& file,
                                          const std::filesystem::path& heatmap = {}) const;
   /// Commits it. Conflicts come back in the report, with nothing written. Updates the sidecar to the new version.
@@ -197,6 +209,8 @@ class Repository {
   /// Moves a region by an affine map and commits, likewise. Charts outside that share vertices with it follow with
   /// these. Throws limit_exceeded where vertices would leave the lattice.
   CommitReport transform(std::string_view mesh, const Region& region, const TransformOptions& options);
+  /// Takes faces out of a region where that changes the surface least, and commits, likewise.
+  CommitReport decimate(std::string_view mesh, const Region& region, const DecimateOptions& options);
 
   /// How two versions of a mesh differ: reads the charts that do, and the index pages above them. Vertices and faces
   /// are recognized whatever charts they are in. Throws invalid_argument for snapshots of different meshes, and for a
@@ -210,8 +224,8 @@ class Repository {
   RepackReport repack(std::string_view mesh, const RepackOptions& options);
 
   /// Merges a branch or another revision into `options.branch`. What one side alone changed is taken as it is; where
-  /// both changed a mesh, charts are merged three ways as with CommitOptions::merge. Conflicts come back in the report,
-  /// with nothing written. Throws not_found, and conflict where both sides changed several meshes.
+  /// both changed a mesh, charts are merged three ways as with CommitOptions::merge. Conflicts come back in the
+  /// report, with nothing written. Throws not_found, and conflict where both sides changed several meshes.
   MergeReport merge(std::string_view revision, const CommitOptions& options);
 
   /// Takes back what a version did to a mesh (may be empty where it changed one), on top of what came later, as a new
