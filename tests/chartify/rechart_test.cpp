@@ -140,7 +140,7 @@ TEST_P(RechartOf, NothingChangesNothing) {
 
 /// Random edits of random regions, one after the other; each finds what the one before left.
 TEST_P(RechartOf, EditsWithoutEnd) {
-  for (const unsigned seed : {1U, 2U, 3U}) {
+  for (const unsigned seed : {1U, 2U}) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     std::mt19937 random(seed);
     StoredMesh stored = store(mesh_, options_of());
