@@ -109,8 +109,9 @@ class Recharter {
 
  private:
   struct Piece {
-    std::uint32_t chart = kNone, first_face = 0, becomes = kNone;
+    std::uint32_t chart = kNone, first_face = kNone, becomes = kNone;
     bool is_component = false;
+    bool is_stray = false;  ///< joins a neighbour
   };
 
   [[nodiscard]] std::vector<std::uint32_t>& labels() { return cut_.partition.chart_of_face; }
@@ -162,9 +163,11 @@ class Recharter {
         cut_.partition.sizes[piece.chart] -= pieces.sizes[p];
         cut_.partition.sizes[piece.becomes] = pieces.sizes[p];
       } else {
+        piece.is_stray = true;
         piece.becomes = piece.chart;
       }
     }
+    settle_strays_alone(pieces, list);
     for (std::size_t f = 0; f < labels().size(); ++f) labels()[f] = list[pieces.piece_of_face[f]].becomes;
     const std::vector<std::uint32_t> before = labels();
     merge_pieces(cut_.neighbours, cut_.partition);
@@ -173,13 +176,39 @@ class Recharter {
       is_new_[f] = ordered_.old_of_face[f] == kNone || labels()[f] != before[f];
   }
 
+  /// Where strays have only each other, as where new faces join small parts of far charts, the largest makes the chart.
+  void settle_strays_alone(const Pieces& pieces, std::vector<Piece>& list) {
+    std::vector<std::uint32_t> first(cut_.components.sizes.size(), kNone);  // the largest, as long as all are strays
+    std::vector<std::uint8_t> has_home(first.size(), 0);
+    const auto component_of = [&](const Piece& p) { return cut_.components.region_of_face[p.first_face]; };
+    for (std::uint32_t p = 0; p < list.size(); ++p) {
+      std::uint32_t& best = first[component_of(list[p])];
+      if (!list[p].is_stray) has_home[component_of(list[p])] = 1;
+      if (best == kNone || pieces.sizes[p] > pieces.sizes[best]) best = p;
+    }
+    for (std::uint32_t p = 0; p < list.size(); ++p) {
+      Piece& piece = list[p];
+      const std::uint32_t component = component_of(piece);
+      if (has_home[component]) continue;
+      const bool boards = rides(component);
+      if (!boards && first[component] != p) continue;
+      cut_.partition.sizes[piece.chart] -= pieces.sizes[p];
+      const std::uint32_t aboard = list[first[component]].chart;
+      piece.becomes = boards ? kNone : cut_.add_chart();
+      cut_.partition.sizes[boards ? aboard : piece.becomes] += pieces.sizes[p];
+      if (boards && first[component] == p) small_.push_back({component, piece.first_face, aboard});
+    }
+  }
+
   /// In each chart the piece that keeps it becomes it: the largest, components only if there is no other.
   [[nodiscard]] std::vector<Piece> list_pieces(const Pieces& pieces) {
     std::vector<Piece> list(pieces.sizes.size());
     std::vector<std::uint32_t> main(cut_.partition.sizes.size(), kNone);
     for (std::uint32_t f = 0; f < labels().size(); ++f) {
       const std::uint32_t p = pieces.piece_of_face[f];
-      if (list[p].chart != kNone || labels()[f] == kNone) continue;
+      if (list[p].first_face != kNone) continue;
+      list[p].first_face = f;
+      if (labels()[f] == kNone) continue;
       const bool is_component = pieces.sizes[p] == cut_.components.sizes[cut_.components.region_of_face[f]];
       list[p] = {labels()[f], f, kNone, is_component};
       std::uint32_t& best = main[labels()[f]];

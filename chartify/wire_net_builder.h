@@ -48,7 +48,8 @@ struct WireNet {
   std::vector<WireOrigin> origin;  ///< per wire
 };
 
-/// \param fixed wires that charts outside the mesh pass too. REQUIRES: all their edges are edges of the mesh
+/// \param fixed wires that charts outside the mesh pass too. REQUIRES: all their edges are edges of the mesh, and no
+///        other edge of the mesh is one of charts outside
 /// \param corners vertices that stay corners whatever the mesh says, as others outside it end wires there or touch it
 ///        in just this vertex; those without a face are left alone
 /// Errors: invalid_argument where a fixed wire runs along no edge of the mesh, or two along the same.

@@ -115,11 +115,13 @@ void add_component(Region& region, const ramcdb::test::TestMesh& mesh, LatticePo
 }
 
 void glue_handle(Region& region, std::uint32_t a, std::uint32_t b) {
-  const auto stays = faces_that_stay(region);
+  // From border to border an edge of a tube might be one that charts outside have as well.
+  std::set<std::uint32_t> taken(region.corners.begin(), region.corners.end());
+  for (const FixedWire& wire : region.fixed) taken.insert(wire.vertices.begin(), wire.vertices.end());
   const Triangle s = region.mesh.faces[a], t = region.mesh.faces[b];
-  for (const std::uint32_t v : s)
-    if (std::ranges::find(t, v) != t.end()) return;
-  if (stays[a] || stays[b]) return;
+  for (const Triangle& end : {s, t})
+    for (const std::uint32_t v : end)
+      if (!taken.insert(v).second) return;
   const Triangle c{t[0], t[2], t[1]};
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t next = (i + 1) % 3;
