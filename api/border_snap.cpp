@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "api/region_mesh.h"
+
 namespace ramcdb::detail {
 namespace {
 
@@ -76,7 +78,7 @@ SnappedBack snap_back_border(const RegionMesh& region, const Lattice& lattice, c
   for (std::size_t w = 0; w < positions.size(); ++w) {
     const std::uint32_t v = match.vertices[match.vertex[w]].region;
     if (v == RegionMatch::kNone || !region.outer_border[v]) continue;
-    const Point home = region.exact.empty() ? lattice.position(region.points[v]) : region.exact[v];
+    const Point home = position_in(region, lattice, v);
     double distance = 0;
     for (int a = 0; a < 3; ++a) distance = std::max(distance, std::abs(positions[w][a] - home[a]));
     if (distance > tolerance) continue;

@@ -5,6 +5,8 @@
 #include <map>
 #include <tuple>
 
+#include "api/region_mesh.h"
+
 namespace ramcdb::detail {
 namespace {
 
@@ -17,25 +19,6 @@ double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z 
 double displacement(const VertexMove& move) {
   const Point by = minus(move.target, move.position);
   return std::sqrt(dot(by, by));
-}
-
-std::vector<Point> model_positions(const Snapshot::Impl& at, const RegionMesh& mesh) {
-  if (!mesh.exact.empty()) return mesh.exact;
-  std::vector<Point> positions;
-  for (const LatticePoint p : mesh.points) positions.push_back(at.record().lattice.position(p));
-  return positions;
-}
-
-/// The middle of the bounding box.
-Point middle_of(const std::vector<Point>& positions) {
-  if (positions.empty()) return {};
-  Point lo = positions.front(), hi = lo;
-  for (const Point& p : positions)
-    for (int a = 0; a < 3; ++a) {
-      lo[a] = std::min(lo[a], p[a]);
-      hi[a] = std::max(hi[a], p[a]);
-    }
-  return {lo.x + (hi.x - lo.x) / 2, lo.y + (hi.y - lo.y) / 2, lo.z + (hi.z - lo.z) / 2};
 }
 
 /// The border of what changed: edges of the faces after a change less those before. While it is empty, the volume
@@ -93,8 +76,8 @@ class Measurement {
         edited_(edited),
         changes_(changes),
         charts_(charts),
-        before_(model_positions(at, region)),
-        after_(model_positions(at, edited.mesh)),
+        before_(positions_in(region, at.record().lattice)),
+        after_(positions_in(edited.mesh, at.record().lattice)),
         by_(displacements_of(edited, changes)) {
     std::vector<ChartId> ids = charts.before;
     ids.insert(ids.end(), charts.after.begin(), charts.after.end());

@@ -83,7 +83,7 @@ class Comparison {
       }
       stays_[source] = true;
       const RegionMesh& mesh = edited_.mesh;
-      const Point p = mesh.exact.empty() ? at_.record().lattice.position(mesh.points[v]) : mesh.exact[v];
+      const Point p = position_in(mesh, at_.record().lattice, v);
       if (auto move = move_to(at_, region_, source, p)) set_.moves.push_back(*move);
     }
     std::ranges::sort(set_.moves, {}, &VertexMove::vertex);

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "api/region_mesh.h"
+
 namespace ramcdb::detail {
 namespace {
 
@@ -44,7 +46,7 @@ std::vector<Point> sample(const RegionMesh& region, const Lattice& lattice, cons
     if (takes(v)) all.push_back(v);
   std::vector<Point> points;
   for (std::size_t i = 0; i < all.size(); i += all.size() / most + 1) {
-    Point p = region.exact.empty() ? lattice.position(region.points[all[i]]) : region.exact[all[i]];
+    Point p = position_in(region, lattice, all[i]);
     for (int a = 0; a < 3; ++a) p[a] -= origin[a];
     points.push_back(p);
   }

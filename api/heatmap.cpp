@@ -6,6 +6,7 @@
 
 #include "api/change_figures.h"
 #include "api/mesh_file/mesh_file.h"
+#include "api/region_mesh.h"
 #include "api/sidecar.h"
 #include "ramcdb/error.h"
 
@@ -72,7 +73,7 @@ class HeatMesh {
   HeatMesh(const Snapshot::Impl& at, const Heat& heat, double most) : heat_(heat) {
     const RegionMesh& mesh = heat.mesh;
     for (std::uint32_t v = 0; v < mesh.points.size(); ++v) {
-      where_.push_back(mesh.exact.empty() ? at.record().lattice.position(mesh.points[v]) : mesh.exact[v]);
+      where_.push_back(position_in(mesh, at.record().lattice, v));
       add(v, ramp(most > 0 ? heat.displacement[v] / most : 0));
     }
     std::vector<std::uint32_t> copy(mesh.points.size(), kNew);

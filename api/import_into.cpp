@@ -11,22 +11,12 @@
 #include "api/import.h"
 #include "api/lattice_choice.h"
 #include "api/mesh_file/mesh_file.h"
+#include "api/region_mesh.h"
 #include "api/snapshot_impl.h"
 #include "ramcdb/error.h"
 
 namespace ramcdb::detail {
 namespace {
-
-/// The middle of a file's box.
-Point middle_of(const std::vector<Point>& positions) {
-  Point lo = positions.front(), hi = lo;
-  for (const Point& p : positions)
-    for (int a = 0; a < 3; ++a) {
-      lo[a] = std::min(lo[a], p[a]);
-      hi[a] = std::max(hi[a], p[a]);
-    }
-  return {lo.x + (hi.x - lo.x) / 2, lo.y + (hi.y - lo.y) / 2, lo.z + (hi.z - lo.z) / 2};
-}
 
 /// How far the farthest position goes along an axis to become the mesh's; the mesh keeps it on its lattice, or to the
 /// last bit of its type. None, where all come back as the numbers of their file.

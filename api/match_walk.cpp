@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "api/groups.h"
+#include "api/disjoint_sets.h"
 
 namespace ramcdb::detail {
 namespace {
@@ -91,7 +91,7 @@ std::size_t keep_what_fits(MatchState& state, const std::vector<std::uint32_t>& 
   std::vector<std::uint32_t> position(state.to.points.size(), kNowhere);
   for (std::uint32_t i = 0; i < paired.size(); ++i) position[paired[i]] = i;
   FaceTruth survives(state);
-  Groups groups(paired.size());
+  DisjointSets groups(paired.size());
   std::vector<Share> shares(paired.size()), of_group(paired.size());
   for (std::uint32_t i = 0; i < paired.size(); ++i)
     for (const std::uint32_t c : state.to_rings.of(paired[i])) {
@@ -102,12 +102,12 @@ std::size_t keep_what_fits(MatchState& state, const std::vector<std::uint32_t>& 
         if (position[w] != kNowhere) groups.join(i, position[w]);
     }
   for (std::uint32_t i = 0; i < paired.size(); ++i) {
-    of_group[groups.of(i)].kept += shares[i].kept;
-    of_group[groups.of(i)].all += shares[i].all;
+    of_group[groups.root(i)].kept += shares[i].kept;
+    of_group[groups.root(i)].all += shares[i].all;
   }
   std::size_t kept = 0;
   for (std::uint32_t i = 0; i < paired.size(); ++i)
-    if (of_group[groups.of(i)].at_least(3, 4) && shares[i].at_least(1, 2))
+    if (of_group[groups.root(i)].at_least(3, 4) && shares[i].at_least(1, 2))
       ++kept;
     else
       state.pairs.unset(paired[i]);

@@ -1,8 +1,9 @@
 #include "ramcdb/patch.h"
 
 #include <algorithm>
-#include <numeric>
 #include <vector>
+
+#include "api/disjoint_sets.h"
 
 namespace ramcdb {
 namespace {
@@ -11,15 +12,11 @@ namespace {
 /// share their vertices there, unless more faces meet.
 class CornerGroups {
  public:
-  explicit CornerGroups(const RegionMesh& region) : region_(region), parent_(3 * region.faces.size()) {
-    std::iota(parent_.begin(), parent_.end(), 0U);
+  explicit CornerGroups(const RegionMesh& region) : region_(region), sets_(3 * region.faces.size()) {
     join_over_edges();
   }
 
-  std::uint32_t group(std::uint32_t corner) {
-    while (parent_[corner] != corner) corner = parent_[corner] = parent_[parent_[corner]];
-    return corner;
-  }
+  std::uint32_t group(std::uint32_t corner) { return sets_.root(corner); }
 
  private:
   struct Pass {
@@ -29,12 +26,10 @@ class CornerGroups {
   std::uint32_t vertex(std::uint32_t corner) const { return region_.faces[corner / 3][corner % 3]; }
   static std::uint32_t next(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
 
-  void join(std::uint32_t a, std::uint32_t b) { parent_[std::max(group(a), group(b))] = std::min(group(a), group(b)); }
-
   void join_over_edges() {
     std::vector<Pass> passes;
-    passes.reserve(parent_.size());
-    for (std::uint32_t c = 0; c < parent_.size(); ++c)
+    passes.reserve(3 * region_.faces.size());
+    for (std::uint32_t c = 0; c < 3 * region_.faces.size(); ++c)
       passes.push_back({std::min(vertex(c), vertex(next(c))), std::max(vertex(c), vertex(next(c))), c});
     std::sort(passes.begin(), passes.end(), [](const Pass& a, const Pass& b) {
       return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
@@ -45,13 +40,13 @@ class CornerGroups {
       if (end - i != 2) continue;
       const std::uint32_t a = passes[i].corner, b = passes[i + 1].corner;
       if (a / 3 == b / 3 || vertex(a) == vertex(b)) continue;
-      join(a, next(b));
-      join(next(a), b);
+      sets_.join(a, next(b));
+      sets_.join(next(a), b);
     }
   }
 
   const RegionMesh& region_;
-  std::vector<std::uint32_t> parent_;
+  detail::DisjointSets sets_;
 };
 
 }  // namespace

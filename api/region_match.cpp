@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "api/region_mesh.h"
 #include "api/welded_surface.h"
 
 namespace ramcdb::detail {
@@ -251,6 +252,14 @@ MatchedRegion match_region(const RegionMesh& region, const OtherMesh& other) {
   MatchedRegion polygons = matched(false);
   const std::uint64_t found = surviving(triangles.match);
   return found * 2 >= count && found > surviving(polygons.match) ? std::move(triangles) : std::move(polygons);
+}
+
+RegionMatch match_region(const RegionMesh& region, const RegionMesh& mesh, const Lattice& lattice) {
+  const std::vector<Point> places = positions_in(mesh, lattice);
+  const TriangleCorners triangles(mesh.faces);
+  const Surface surface = triangles.over(mesh.points);
+  return match_region(region, RegionFaces(region, true),
+                      {places, surface.points, surface.corners, surface.firsts, {}, false});
 }
 
 }  // namespace ramcdb::detail

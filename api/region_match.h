@@ -58,4 +58,7 @@ struct MatchedRegion {
 /// most of its faces, and more than otherwise, are found that way. `region` must outlive the result.
 [[nodiscard]] MatchedRegion match_region(const RegionMesh& region, const OtherMesh& other);
 
+/// Finds a region in a mesh of the same lattice, such as another version of it, triangle by triangle.
+[[nodiscard]] RegionMatch match_region(const RegionMesh& region, const RegionMesh& mesh, const Lattice& lattice);
+
 }  // namespace ramcdb::detail

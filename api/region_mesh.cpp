@@ -169,6 +169,24 @@ void mark_outer_border(RegionMesh& region) {
 
 }  // namespace
 
+std::vector<Point> positions_in(const RegionMesh& mesh, const Lattice& lattice) {
+  std::vector<Point> positions;
+  positions.reserve(mesh.points.size());
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) positions.push_back(position_in(mesh, lattice, v));
+  return positions;
+}
+
+Point middle_of(std::span<const Point> points) {
+  if (points.empty()) return {};
+  Point lo = points.front(), hi = lo;
+  for (const Point& p : points)
+    for (int a = 0; a < 3; ++a) {
+      lo[a] = std::min(lo[a], p[a]);
+      hi[a] = std::max(hi[a], p[a]);
+    }
+  return {lo.x + (hi.x - lo.x) / 2, lo.y + (hi.y - lo.y) / 2, lo.z + (hi.z - lo.z) / 2};
+}
+
 RegionMesh load_region(std::span<const RegionPart> parts, unsigned threads, ReadCost* cost, bool with_layers) {
   std::vector<std::unordered_map<WireId, PageWire>> wires;
   const std::vector<Loaded> charts = load_parts(parts, threads, cost, with_layers, wires);

@@ -20,4 +20,14 @@ struct RegionPart {
 [[nodiscard]] RegionMesh load_region(std::span<const RegionPart> parts, unsigned threads, ReadCost* cost = nullptr,
                                      bool with_layers = false);
 
+/// Where a vertex of a mesh is, model units: of a lossless one to the last bit.
+[[nodiscard]] inline Point position_in(const RegionMesh& mesh, const Lattice& lattice, std::size_t vertex) {
+  return mesh.exact.empty() ? lattice.position(mesh.points[vertex]) : mesh.exact[vertex];
+}
+/// The same of all vertices.
+[[nodiscard]] std::vector<Point> positions_in(const RegionMesh& mesh, const Lattice& lattice);
+
+/// The middle of the bounding box of some points; the origin of none.
+[[nodiscard]] Point middle_of(std::span<const Point> points);
+
 }  // namespace ramcdb::detail

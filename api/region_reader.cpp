@@ -11,6 +11,7 @@
 #include "api/region_faces.h"
 #include "api/region_file.h"
 #include "api/region_match.h"
+#include "api/region_mesh.h"
 #include "api/value_interpolation.h"
 #include "ramcdb/error.h"
 
@@ -72,15 +73,12 @@ class FileEditBuilder {
   void add_vertices() {
     vertex_of_region_.assign(region_.points.size(), kNone);
     for (const RegionMatch::Vertex& vertex : match_.vertices) {
-      const Point position = vertex.other == kNone ? position_in_region(vertex.region) : file_.positions[vertex.other];
+      const Point position = vertex.other == kNone ? position_in(region_, at_.record().lattice, vertex.region)
+                                                   : file_.positions[vertex.other];
       const std::uint32_t added = builder_.add_vertex(vertex.region, position);
       if (vertex.region != kNone) vertex_of_region_[vertex.region] = added;
       places_.vertices.push_back(vertex.other);
     }
-  }
-
-  [[nodiscard]] Point position_in_region(std::uint32_t vertex) const {
-    return region_.exact.empty() ? at_.record().lattice.position(region_.points[vertex]) : region_.exact[vertex];
   }
 
   /// The triangles of the region's faces that the file has.
@@ -171,7 +169,7 @@ std::vector<Point> relative_positions(const Snapshot::Impl& at, const RegionMesh
   std::vector<Point> positions;
   positions.reserve(region.points.size());
   for (std::size_t v = 0; v < region.points.size(); ++v) {
-    Point p = region.exact.empty() ? at.record().lattice.position(region.points[v]) : region.exact[v];
+    Point p = position_in(region, at.record().lattice, v);
     for (int a = 0; a < 3; ++a)
       if (origin[a] != 0) p[a] -= origin[a];
     positions.push_back(p);

@@ -6,6 +6,7 @@
 
 #include "api/edited_region_builder.h"
 #include "api/region_match.h"
+#include "api/region_mesh.h"
 
 namespace ramcdb::detail {
 namespace {
@@ -16,23 +17,16 @@ bool same_place(const Point& a, const Point& b) {
   return same_number(a.x, b.x) && same_number(a.y, b.y) && same_number(a.z, b.z);
 }
 
-std::vector<Point> positions_in(const Snapshot::Impl& at, const RegionMesh& mesh) {
-  if (!mesh.exact.empty()) return mesh.exact;
-  std::vector<Point> positions;
-  positions.reserve(mesh.points.size());
-  for (const LatticePoint p : mesh.points) positions.push_back(at.record().lattice.position(p));
-  return positions;
-}
-
 class ThreeWayMerge {
  public:
   ThreeWayMerge(const Snapshot::Impl& tip, const RegionMesh& base, const EditedRegion& ours, const RegionMesh& theirs)
       : base_(base),
         ours_(ours),
         theirs_(theirs),
-        base_places_(positions_in(tip, base)),
-        our_places_(positions_in(tip, ours.mesh)),
-        their_places_(positions_in(tip, theirs)),
+        lattice_(tip.record().lattice),
+        base_places_(positions_in(base, lattice_)),
+        our_places_(positions_in(ours.mesh, lattice_)),
+        their_places_(positions_in(theirs, lattice_)),
         values_(theirs.attributes),
         builder_(tip, theirs) {}
 
@@ -51,13 +45,7 @@ class ThreeWayMerge {
 
  private:
   void match_theirs() {
-    const RegionFaces faces(base_, true);
-    std::vector<std::uint32_t> corners, firsts{0};
-    for (const Triangle& t : theirs_.faces) {
-      corners.insert(corners.end(), t.begin(), t.end());
-      firsts.push_back(static_cast<std::uint32_t>(corners.size()));
-    }
-    const RegionMatch match = match_region(base_, faces, {their_places_, theirs_.points, corners, firsts, {}, false});
+    const RegionMatch match = match_region(base_, theirs_, lattice_);
     base_vertex_.assign(theirs_.points.size(), kNew);
     their_vertex_.assign(base_.points.size(), kNew);
     for (std::uint32_t v = 0; v < base_vertex_.size(); ++v)
@@ -250,6 +238,7 @@ class ThreeWayMerge {
   const RegionMesh& base_;
   const EditedRegion& ours_;
   const RegionMesh& theirs_;
+  const Lattice& lattice_;
   std::vector<Point> base_places_, our_places_, their_places_;
   std::vector<Attribute> values_;  ///< in the numbering of theirs
   EditedRegionBuilder builder_;

@@ -8,6 +8,7 @@
 #include "api/chart_difference.h"
 #include "api/edited_region_builder.h"
 #include "api/region_match.h"
+#include "api/region_mesh.h"
 #include "api/version_figures.h"
 #include "ramcdb/error.h"
 
@@ -18,13 +19,17 @@ namespace {
 class MeshAsEdit {
  public:
   MeshAsEdit(const Snapshot::Impl& at, const RegionMesh& region, const RegionMesh& mesh)
-      : at_(at), region_(region), mesh_(mesh), values_(region.attributes), builder_(at, region) {}
+      : at_(at),
+        region_(region),
+        mesh_(mesh),
+        values_(region.attributes),
+        match_(match_region(region, mesh, at.record().lattice)),
+        builder_(at, region) {}
 
   EditedRegion run() {
-    match();
-    for (std::uint32_t v = 0; v < places_.size(); ++v) {
+    for (std::uint32_t v = 0; v < mesh_.points.size(); ++v) {
       const std::uint32_t source = match_.vertices[match_.vertex[v]].region;
-      (void)builder_.add_vertex(source, places_[v]);
+      (void)builder_.add_vertex(source, position_in(mesh_, at_.record().lattice, v));
       take_value(AttributeOf::vertex, v, source);
     }
     for (std::uint32_t f = 0; f < mesh_.faces.size(); ++f) add_face(f);
@@ -35,18 +40,6 @@ class MeshAsEdit {
   }
 
  private:
-  void match() {
-    places_ = mesh_.exact;
-    for (std::size_t v = places_.size(); v < mesh_.points.size(); ++v)
-      places_.push_back(at_.record().lattice.position(mesh_.points[v]));
-    std::vector<std::uint32_t> corners, firsts{0};
-    for (const Triangle& t : mesh_.faces) {
-      corners.insert(corners.end(), t.begin(), t.end());
-      firsts.push_back(static_cast<std::uint32_t>(corners.size()));
-    }
-    match_ = match_region(region_, RegionFaces(region_, true), {places_, mesh_.points, corners, firsts, {}, false});
-  }
-
   void add_face(std::uint32_t f) {
     const FaceMatch found = match_.faces[f];
     Triangle vertices = mesh_.faces[f];
@@ -96,7 +89,6 @@ class MeshAsEdit {
   const RegionMesh& region_;
   const RegionMesh& mesh_;
   std::vector<Attribute> values_;
-  std::vector<Point> places_;
   RegionMatch match_;
   EditedRegionBuilder builder_;
 };
