@@ -178,8 +178,8 @@ EditedRegion transferred(const EditedRegion& edited, const RegionMesh& from, con
   for (std::uint32_t f = 0; f < to.faces.size(); ++f) {
     if (known[f]) continue;
     const Triangle& t = to.faces[f];
-    for (const std::uint32_t v : t)
-      if (here[v] == kNew) throw Error(Errc::conflict, "a vertex that another chart shares is gone");
+    for (const std::uint32_t v : t)  // a corner that the edit left stays with the others
+      if (here[v] == kNew) here[v] = out.add_vertex(to, v, v);
     out.add_face(to, f, {here[t[0]], here[t[1]], here[t[2]]}, f);
     face_here[f] = count++;
   }

@@ -22,11 +22,30 @@ void pair_by_claims(MatchState& state, std::vector<std::uint32_t> ids) {
   by_place.settle_by_edges(state);
 }
 
-/// Vertices that lie where one lay, but with nothing else around them that stayed.
+/// Vertices with faces that have no pair, by place and then by number.
+std::vector<std::uint32_t> unpaired(const Rings& rings, const std::vector<std::uint32_t>& places, auto&& is_paired) {
+  std::vector<std::uint32_t> left;
+  for (std::uint32_t v = 0; v < places.size(); ++v)
+    if (rings.degree(v) && !is_paired(v)) left.push_back(v);
+  std::ranges::stable_sort(left, {}, [&](std::uint32_t v) { return places[v]; });
+  return left;
+}
+
+/// Vertices that lie where one lay, but with nothing else around them that stayed: where several lie, those that are
+/// left, in their order.
 void pair_what_lies_in_place(MatchState& state) {
-  const std::vector<std::uint32_t> claims = claims_by_place(state);
-  for (std::uint32_t w = 0; w < claims.size(); ++w)
-    if (claims[w] != kNowhere && state.can_pair(claims[w], w)) state.pairs.set(claims[w], w);
+  const Places& places = state.places;
+  const auto mine = unpaired(state.from_rings, places.from, [&](auto v) { return state.pairs.to(v) != kNowhere; });
+  const auto theirs = unpaired(state.to_rings, places.to, [&](auto w) { return state.pairs.from(w) != kNowhere; });
+  for (std::size_t i = 0, j = 0; i < mine.size() && j < theirs.size();) {
+    const std::uint32_t place = places.from[mine[i]], other = places.to[theirs[j]];
+    std::size_t i_end = i, j_end = j;
+    while (place <= other && i_end < mine.size() && places.from[mine[i_end]] == place) ++i_end;
+    while (other <= place && j_end < theirs.size() && places.to[theirs[j_end]] == other) ++j_end;
+    for (std::size_t k = 0; k < std::min(i_end - i, j_end - j); ++k) state.pairs.set(mine[i + k], theirs[j + k]);
+    i = i_end;
+    j = j_end;
+  }
 }
 
 void pair_by_geometry(MatchState& state, std::vector<std::uint32_t> ids) {

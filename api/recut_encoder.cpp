@@ -529,7 +529,7 @@ class RecutEncoder {
     for (const auto& [id, wire] : surface_.wires) before.insert({wire.entry.begin, wire.entry.end});
     for (const CornerId id : after) r.corners += !before.contains(id);
     for (const CornerId id : before) r.corners -= !after.contains(id) && !surface_.shared_corners.contains(id);
-    const Topology was = analyze(surface_.before), is = analyze(surface_.mesh);
+    const Topology was = analyze(surface_.around_before), is = analyze(surface_.around);
     r.nonmanifold_edges += is.nonmanifold_edges - was.nonmanifold_edges;
     r.nonmanifold_vertices += is.nonmanifold_vertices - was.nonmanifold_vertices;
     r.inconsistent_edges += is.inconsistent_edges - was.inconsistent_edges;

@@ -28,6 +28,7 @@ class SurfaceBuilder {
     add_before();
     fix_wires();
     fix_corners();
+    add_surroundings(threads);
     return std::move(out_);
   }
 
@@ -70,9 +71,18 @@ class SurfaceBuilder {
       const bool of_chart = source != kNew && region_.keys[source].where == VertexKey::Where::chart;
       const std::uint32_t chart = of_chart ? position_of(ChartId(region_.keys[source].id)) : kNew;
       if (of_chart && chart == kNew) continue;
+      if (source != kNew && stays_in_others(source)) continue;
       (void)local(v);
       out_.chart_of_isolated_vertex.push_back(chart);
     }
+  }
+
+  /// Whether charts that are not cut anew have a vertex, a corner, in their faces.
+  [[nodiscard]] bool stays_in_others(std::uint32_t source) const {
+    const VertexKey key = region_.keys[source];
+    if (key.where != VertexKey::Where::corner) return false;
+    const std::set<ChartId> around = charts_at_corner(at_, CornerId(key.id), region_.points[source]);
+    return !std::ranges::all_of(around, [&](ChartId c) { return position_of(c) != kNew; });
   }
 
   void name_vertices() {
@@ -102,6 +112,8 @@ class SurfaceBuilder {
     for (std::uint32_t v = 0; v < region_.keys.size(); ++v)
       if (region_.keys[v].where == VertexKey::Where::chart && position_of(ChartId(region_.keys[v].id)) != kNew)
         (void)add(v);
+    for (std::uint32_t v = 0; v < region_.keys.size(); ++v)
+      if (local_of[v] != kNew) before_of_key_.emplace(region_.keys[v].packed(), local_of[v]);
   }
 
   void fix_wires() {
@@ -113,6 +125,8 @@ class SurfaceBuilder {
       chartify::FixedWire fixed{out_.path_of(out_.wires.at(id).entry)};
       if (fixed.vertices.empty())
         throw Error(Errc::conflict, fmt::format("vertices of wire {} are gone, which other charts pass", id.value));
+      const PageWire& entry = out_.wires.at(id).entry;
+      outside_.insert(entry.charts.begin(), entry.charts.end());
       out_.fixed_ids.push_back(id);
       out_.fixed.push_back(std::move(fixed));
     }
@@ -128,16 +142,46 @@ class SurfaceBuilder {
       const std::set<ChartId> around = charts_at_corner(at_, corner, position);
       if (std::ranges::all_of(around, [&](ChartId c) { return out_.holds(c); })) continue;
       out_.shared_corners.insert(corner);
+      outside_.insert(around.begin(), around.end());
       const auto at = out_.vertex_of_key.find(VertexKey{VertexKey::Where::corner, corner.value, 0}.packed());
       if (at != out_.vertex_of_key.end()) out_.corners.push_back(at->second);
     }
     std::ranges::sort(out_.corners);
   }
 
+  /// Whether vertices of both sides are manifold is seen from both sides only.
+  void add_surroundings(unsigned threads) {
+    out_.around_before = out_.before;
+    out_.around = out_.mesh;
+    std::erase_if(outside_, [&](ChartId c) { return out_.holds(c); });
+    const std::vector<ChartId> ids(outside_.begin(), outside_.end());
+    std::unordered_map<std::uint64_t, std::uint32_t> before = before_of_key_, after = out_.vertex_of_key;
+    const auto vertex = [](auto& of_key, chartify::IndexedMesh& mesh, const LoadedChart& chart, std::uint32_t v) {
+      const auto [it, is_new] =
+          of_key.emplace(chart.keys[v].packed(), static_cast<std::uint32_t>(mesh.positions.size()));
+      if (is_new) mesh.positions.push_back(chart.chart.positions[v]);
+      return it->second;
+    };
+    const std::vector<LoadedChart> charts = ChartLoader(at_).load(ids, threads);
+    for (const LoadedChart& chart : charts)
+      for (const Triangle& t : chart.chart.faces) {
+        if (std::ranges::none_of(t, [&](auto v) { return before_of_key_.contains(chart.keys[v].packed()); })) continue;
+        Triangle was{}, is{};
+        for (std::size_t i = 0; i < 3; ++i) {
+          was[i] = vertex(before, out_.around_before, chart, t[i]);
+          is[i] = vertex(after, out_.around, chart, t[i]);
+        }
+        out_.around_before.faces.push_back(was);
+        out_.around.faces.push_back(is);
+      }
+  }
+
   const Snapshot::Impl& at_;
   const RegionMesh& region_;
   const EditedRegion& edited_;
   std::vector<std::uint32_t> local_of_;
+  std::unordered_map<std::uint64_t, std::uint32_t> before_of_key_;
+  std::set<ChartId> outside_;
   RecutSurface out_;
 };
 

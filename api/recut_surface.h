@@ -28,6 +28,8 @@ struct RecutSurface {
   std::set<CornerId> shared_corners;            ///< that other charts have
 
   chartify::IndexedMesh before;  ///< what they were
+  /// `mesh` and `before` with the faces of other charts at their vertices.
+  chartify::IndexedMesh around, around_before;
 
   /// The path of a wire over vertices of `mesh`; empty when one of them is gone.
   [[nodiscard]] std::vector<std::uint32_t> path_of(const PageWire& wire) const;
