@@ -58,15 +58,21 @@ class VersionComparison {
 
   /// A vertex that charts have which do not differ was there and is there.
   void drop_shared_with_outside() {
-    std::erase_if(changes_.vertices_gone, [&](std::uint32_t v) { return is_outside(from_, before_, v); });
-    std::erase_if(changes_.vertices_new, [&](std::uint32_t v) { return is_outside(to_, after_, v); });
+    drop_shared(from_, before_, changes_.vertices_gone);
+    drop_shared(to_, after_, changes_.vertices_new);
   }
 
-  static bool is_outside(const Snapshot::Impl& at, const RegionMesh& region, std::uint32_t v) {
-    if (region.outer_border[v]) return true;
-    if (region.keys[v].where != VertexKey::Where::corner) return false;
-    const std::set<ChartId> around = charts_at_corner(at, CornerId(region.keys[v].id), region.points[v]);
-    return !std::ranges::all_of(around, [&](ChartId id) { return std::ranges::binary_search(region.charts, id); });
+  static void drop_shared(const Snapshot::Impl& at, const RegionMesh& region, std::vector<std::uint32_t>& vertices) {
+    CornerPlaces corners;
+    for (const std::uint32_t v : vertices)
+      if (region.keys[v].where == VertexKey::Where::corner) corners.emplace(region.keys[v].id, region.points[v]);
+    const auto around = charts_at_corners(at, corners);
+    std::erase_if(vertices, [&](std::uint32_t v) {
+      if (region.outer_border[v] || region.keys[v].where != VertexKey::Where::corner)
+        return bool{region.outer_border[v]};
+      return !std::ranges::all_of(around.at(CornerId(region.keys[v].id)),
+                                  [&](ChartId id) { return std::ranges::binary_search(region.charts, id); });
+    });
   }
 
   [[nodiscard]] FaceCharts face_charts() const {

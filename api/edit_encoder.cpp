@@ -29,6 +29,8 @@ class Touched {
       for (const WireLoop& loop : find_chart(*ref->leaf, id)->loops)
         for (const DirectedWire step : loop) look_at_wire(*ref->leaf, step.wire, wires, corners);
     }
+    for (const auto& [corner, around] : charts_at_corners(at_, corners_))
+      for (const ChartId chart : around) add_around_corner(chart, corner);
   }
 
   [[nodiscard]] const std::set<ChartId>& charts() const { return charts_; }
@@ -39,11 +41,8 @@ class Touched {
                     const std::set<std::uint32_t>& corners) {
     const PageWire& wire = *find_wire(leaf, id);
     if (wires.contains(id.value)) add_wire(wire);
-    for (const CornerId corner : {wire.begin, wire.end}) {
-      if (!corners.contains(corner.value) || !corners_.insert(corner).second) continue;
-      for (const ChartId chart : charts_at_corner(at_, corner, find_corner(leaf, corner)->position))
-        add_around_corner(chart, corner);
-    }
+    for (const CornerId corner : {wire.begin, wire.end})
+      if (corners.contains(corner.value)) corners_.emplace(corner, find_corner(leaf, corner)->position);
   }
 
   void add_around_corner(ChartId id, CornerId corner) {
@@ -64,7 +63,7 @@ class Touched {
   const Snapshot::Impl& at_;
   std::set<ChartId> charts_;
   std::set<WireId> wires_;
-  std::set<CornerId> corners_;
+  CornerPlaces corners_;
 };
 
 std::vector<VertexKey> keys_of(std::span<const VertexMove> moves) {

@@ -81,7 +81,7 @@ class SurfaceBuilder {
   [[nodiscard]] bool stays_in_others(std::uint32_t source) const {
     const VertexKey key = region_.keys[source];
     if (key.where != VertexKey::Where::corner) return false;
-    const std::set<ChartId> around = charts_at_corner(at_, CornerId(key.id), region_.points[source]);
+    const auto around = charts_at_corners(at_, {{CornerId(key.id), region_.points[source]}}).begin()->second;
     return !std::ranges::all_of(around, [&](ChartId c) { return position_of(c) != kNew; });
   }
 
@@ -133,13 +133,12 @@ class SurfaceBuilder {
   }
 
   void fix_corners() {
-    std::map<CornerId, LatticePoint> corners;
+    CornerPlaces corners;
     for (const auto& [id, wire] : out_.wires) {
       corners.emplace(wire.entry.begin, wire.wire.points.front());
       corners.emplace(wire.entry.end, wire.wire.points.back());
     }
-    for (const auto& [corner, position] : corners) {
-      const std::set<ChartId> around = charts_at_corner(at_, corner, position);
+    for (const auto& [corner, around] : charts_at_corners(at_, corners)) {
       if (std::ranges::all_of(around, [&](ChartId c) { return out_.holds(c); })) continue;
       out_.shared_corners.insert(corner);
       outside_.insert(around.begin(), around.end());

@@ -157,33 +157,40 @@ void add_shape(const Snapshot::Impl& at, const RegionShape& shape, ChartSet& fou
   }
 }
 
-bool has_corner(const LeafPage& leaf, const PageChart& chart, CornerId corner) {
-  for (const WireLoop& loop : chart.loops)
-    for (const DirectedWire step : loop) {
-      const PageWire& wire = *find_wire(leaf, step.wire);
-      if (wire.begin == corner || wire.end == corner) return true;
-    }
-  return false;
-}
+/// Points, to be asked whether a box holds any of them.
+class PlacesInBox {
+ public:
+  explicit PlacesInBox(const CornerPlaces& corners) {
+    for (const auto& [id, position] : corners) sorted_.push_back(position);
+    std::ranges::sort(sorted_);
+  }
+  [[nodiscard]] bool any(const LatticeBox& box) const {
+    if (box.empty()) return false;
+    for (auto p = std::ranges::lower_bound(sorted_, box.lo.x, {}, &LatticePoint::x);
+         p != sorted_.end() && p->x <= box.hi.x; ++p)
+      if (box.contains(*p)) return true;
+    return false;
+  }
+
+ private:
+  std::vector<LatticePoint> sorted_;  ///< by x first
+};
 
 /// One ring: every chart that shares a wire or a corner with one of `found`.
 ChartSet ring_of(const Snapshot::Impl& at, const ChartSet& found, ReadCost* cost) {
   ChartSet grown = found;
-  std::set<CornerId> corners;
+  CornerPlaces corners;
   for (const ChartId id : found) {
     const auto ref = at.pages().leaf_of(id, cost);
-    for (const WireLoop& loop : find_chart(*ref->leaf, id)->loops) {
+    for (const WireLoop& loop : find_chart(*ref->leaf, id)->loops)
       for (const DirectedWire step : loop) {
         const PageWire& wire = *find_wire(*ref->leaf, step.wire);
         grown.insert(wire.charts.begin(), wire.charts.end());
-        for (const CornerId corner : {wire.begin, wire.end}) {
-          if (!corners.insert(corner).second) continue;
-          const auto around = charts_at_corner(at, corner, find_corner(*ref->leaf, corner)->position, cost);
-          grown.insert(around.begin(), around.end());
-        }
+        for (const CornerId corner : {wire.begin, wire.end})
+          corners.emplace(corner, find_corner(*ref->leaf, corner)->position);
       }
-    }
   }
+  for (const auto& [corner, around] : charts_at_corners(at, corners, cost)) grown.insert(around.begin(), around.end());
   return grown;
 }
 
@@ -193,14 +200,23 @@ bool meets_shape(const MeshRecord& record, const LatticeBox& box, const RegionSh
   return !box.empty() && meets_any(model_box(record, box), shape);
 }
 
-std::set<ChartId> charts_at_corner(const Snapshot::Impl& at, CornerId corner, LatticePoint position, ReadCost* cost) {
-  std::set<ChartId> charts;
-  at.pages().visit([&](const LatticeBox& box) { return box.contains(position); },
+std::map<CornerId, std::set<ChartId>> charts_at_corners(const Snapshot::Impl& at, const CornerPlaces& corners,
+                                                        ReadCost* cost) {
+  std::map<CornerId, std::set<ChartId>> charts;
+  for (const auto& [corner, position] : corners) charts[corner];
+  const PlacesInBox places(corners);
+  at.pages().visit([&](const LatticeBox& box) { return places.any(box); },
                    [&](const LeafRef& ref) {
-                     if (!find_corner(*ref.leaf, corner)) return;
-                     for (const PageChart& chart : ref.leaf->charts)
-                       if (chart.box.contains(position) && has_corner(*ref.leaf, chart, corner))
-                         charts.insert(chart.id);
+                     for (const PageChart& chart : ref.leaf->charts) {
+                       if (!places.any(chart.box)) continue;
+                       for (const WireLoop& loop : chart.loops)
+                         for (const DirectedWire step : loop) {
+                           const PageWire& wire = *find_wire(*ref.leaf, step.wire);
+                           for (const CornerId corner : {wire.begin, wire.end})
+                             if (const auto found = charts.find(corner); found != charts.end())
+                               found->second.insert(chart.id);
+                         }
+                     }
                    },
                    cost);
   return charts;

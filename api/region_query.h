@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <set>
 #include <vector>
 
@@ -14,8 +15,12 @@ namespace ramcdb::detail {
 /// Whether a chart's box meets a box, ball or frustum; false for the shapes that name charts.
 [[nodiscard]] bool meets_shape(const MeshRecord& record, const LatticeBox& box, const RegionShape& shape);
 
-/// All charts that have a corner, wherever in the index they stand: the position leads to their pages.
-[[nodiscard]] std::set<ChartId> charts_at_corner(const Snapshot::Impl& at, CornerId corner, LatticePoint position,
-                                                 ReadCost* cost = nullptr);
+/// Corners with their positions.
+using CornerPlaces = std::map<CornerId, LatticePoint>;
+
+/// All charts that have each of some corners, wherever in the index they stand: the positions lead to their pages.
+[[nodiscard]] std::map<CornerId, std::set<ChartId>> charts_at_corners(const Snapshot::Impl& at,
+                                                                      const CornerPlaces& corners,
+                                                                      ReadCost* cost = nullptr);
 
 }  // namespace ramcdb::detail
