@@ -46,7 +46,7 @@ std::vector<ChartId> charts_other_than(std::span<const RegionPart> parts, const 
     if (there.root() == part.at->root()) continue;
     for (const ChartId id : part.charts) {
       const ChartState was = state_in(part.at->pages(), id), is = state_in(there, id);
-      if (is != was && !(mine && (is.empty() || is_work_of(mine, was, is)))) others.push_back(id);
+      if (is != was && !(mine && is_work_of(mine, was, is))) others.push_back(id);
     }
   }
   std::sort(others.begin(), others.end());

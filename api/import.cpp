@@ -208,13 +208,13 @@ ImportReport import_mesh(db::Store& store, const std::filesystem::path& file, co
   chartify::CanonicalMesh canonical =
       chartify::canonical_order({std::move(points), mesh_file::triangles_of(data, cut)});
   const LayerSource layers(data, cut, canonical, record, exact, options.lossless || options.lossless_attributes);
+  canonical.mesh.polygon_of_face = layers.polygon_of_face();
   note_topology(record, canonical.mesh);
   for (const LatticePoint p : canonical.mesh.positions) record.range.add(p);
 
   chartify::Options chartify_options;
   chartify_options.target_faces = options.chart_faces;
   chartify_options.method = options.paper_chartify ? chartify::Method::paper : chartify::Method::refined;
-  canonical.mesh.polygon_of_face = layers.polygon_of_face();
   chartify_options.threads = options.threads;
   chartify_options.progress = stage(options.progress, "chartify");
   const chartify::Charts charts = chartify::chartify(canonical.mesh, chartify_options);

@@ -1,12 +1,10 @@
 #include "api/recut_encoder.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstring>
 
 #include "api/layer_encoder.h"
 #include "api/parallel.h"
+#include "api/recut_comparison.h"
 #include "api/recut_surface.h"
 #include "api/region_faces.h"
 #include "api/store_format.h"
@@ -280,11 +278,15 @@ class RecutEncoder {
   void encode_charts() {
     std::vector<Coded> coded(net_.charts.size());
     const ChartCoder coder = coder_of(at_);
+    const RecutComparison comparison(region_, edited_, surface_, net_);
     const LayerEncoder layers(table_, at_.record(), attributes_, edited_.mesh.exact);
     parallel_for(coded.size(), threads_, [&](std::size_t i) {
       const auto c = static_cast<std::uint32_t>(i);
       coded[i].entry = entry_of(c);
-      if ((coded[i].same = stays_same(c, coded[i].entry))) return;
+      if (charts_.continues[c] != chartify::kNone) {
+        coded[i].same = comparison.keep(surface_.loaded[charts_.continues[c]], net_.charts[c], coded[i].entry);
+        if (coded[i].same) return;
+      }
       coded[i].encoded = codec::encode_chart(net_.charts[i].chart, coder.profile, coder.tables, at_.record().range);
       if (!layers.empty())
         coded[i].layers = layers.encode(places_of(net_.charts[i], coded[i].encoded), coded[i].encoded);
@@ -344,160 +346,6 @@ class RecutEncoder {
       return sum;
     };
     return std::ranges::min_element(surface_.loaded, {}, distance)->entry.id;
-  }
-
-  /// Whether a chart has the very faces, borders, places and values that it had; then `entry` becomes what it was, with
-  /// the wires that it passes now.
-  [[nodiscard]] bool stays_same(std::uint32_t c, PageChart& entry) const {
-    if (charts_.continues[c] == chartify::kNone) return false;
-    const LoadedChart& old = surface_.loaded[charts_.continues[c]];
-    const NetChart& now = net_.charts[c];
-    if (old.chart.faces.size() != now.chart.faces.size() || old.chart.positions.size() != now.chart.positions.size() ||
-        old.chart.loop_sizes.size() != now.chart.loop_sizes.size())
-      return false;
-    PageChart same = old.entry;
-    std::vector<std::uint32_t> local(old.chart.positions.size(), kNew);  // old vertices -> new ones
-    if (!match_loops(old, now, entry, same, local)) return false;
-    if (!match_faces_of(old, c, local)) return false;
-    if (!same_values(c)) return false;
-    entry = std::move(same);
-    return true;
-  }
-
-  /// Finds each loop of the old chart among those of the new one, begun at the same vertex.
-  [[nodiscard]] bool match_loops(const LoadedChart& old, const NetChart& now, const PageChart& entry, PageChart& same,
-                                 std::vector<std::uint32_t>& local) const {
-    std::vector<bool> taken(now.loops.size(), false);
-    std::uint32_t first = 0;
-    for (std::size_t l = 0; l < old.chart.loop_sizes.size(); first += old.chart.loop_sizes[l++]) {
-      std::vector<std::uint32_t> path;
-      for (std::uint32_t i = first; i < first + old.chart.loop_sizes[l]; ++i) {
-        const auto v = surface_.vertex_of_key.find(old.keys[i].packed());
-        if (v == surface_.vertex_of_key.end()) return false;
-        path.push_back(v->second);
-      }
-      std::uint32_t now_first = 0;
-      bool found = false;
-      for (std::size_t m = 0; m < now.loops.size() && !found; now_first += now.chart.loop_sizes[m++]) {
-        if (taken[m] || now.chart.loop_sizes[m] != path.size()) continue;
-        const auto turned = turn_of(path, std::span(now.mesh_vertex).subspan(now_first, path.size()), now.loops[m]);
-        if (!turned) continue;
-        found = taken[m] = true;
-        same.loops[l] = entry.loops[m];
-        std::rotate(same.loops[l].begin(), same.loops[l].begin() + static_cast<std::ptrdiff_t>(turned->step),
-                    same.loops[l].end());
-        for (std::uint32_t i = 0; i < path.size(); ++i)
-          local[first + i] = now_first + static_cast<std::uint32_t>((i + turned->vertex) % path.size());
-      }
-      if (!found) return false;
-    }
-    return true;
-  }
-
-  struct Turn {
-    std::size_t step, vertex;  ///< of the new loop, where the old one begins
-  };
-
-  /// Where a new loop begins with the first vertex of an old one, at the start of a wire, and then is the same.
-  [[nodiscard]] std::optional<Turn> turn_of(const std::vector<std::uint32_t>& path, std::span<const std::uint32_t> loop,
-                                            const std::vector<NetLoopStep>& steps) const {
-    std::size_t vertex = 0;
-    for (std::size_t s = 0; s < steps.size(); vertex += net_.wires[steps[s++].wire].vertices.size() - 1) {
-      std::size_t i = 0;
-      while (i < path.size() && path[i] == loop[(vertex + i) % loop.size()]) ++i;
-      if (i == path.size()) return Turn{s, vertex};
-    }
-    return std::nullopt;
-  }
-
-  /// Whether the faces are the same over vertices that are the same, at the same places.
-  [[nodiscard]] bool match_faces_of(const LoadedChart& old, std::uint32_t c, std::vector<std::uint32_t>& local) const {
-    const NetChart& now = net_.charts[c];
-    std::unordered_map<std::uint32_t, std::uint32_t> face_now;  // old faces, counted in their chart -> new
-    const std::uint32_t first = first_face(old.entry.id);
-    for (std::uint32_t f = 0; f < now.mesh_face.size(); ++f) {
-      const std::uint32_t source = edited_.face_source[surface_.face[now.mesh_face[f]]];
-      if (source == kNew || source < first || source - first >= old.chart.faces.size()) return false;
-      face_now.emplace(source - first, f);
-    }
-    std::vector<bool> hit(local.size(), false);
-    for (std::uint32_t f = 0; f < old.chart.faces.size(); ++f) {
-      const auto it = face_now.find(f);
-      if (it == face_now.end()) return false;
-      for (int i = 0; i < 3; ++i) {
-        std::uint32_t& known = local[old.chart.faces[f][i]];
-        const std::uint32_t vertex = now.chart.faces[it->second][i];
-        if (known == kNew) known = vertex;
-        if (known != vertex) return false;
-      }
-    }
-    for (std::uint32_t v = 0; v < local.size(); ++v) {
-      if (local[v] == kNew) {  // isolated
-        local[v] = isolated_vertex(old.keys[v], now);
-        if (local[v] == kNew) return false;
-      }
-      if (hit[local[v]] || old.chart.positions[v] != now.chart.positions[local[v]]) return false;
-      hit[local[v]] = true;
-    }
-    return true;
-  }
-
-  [[nodiscard]] std::uint32_t isolated_vertex(const VertexKey& key, const NetChart& now) const {
-    for (std::uint32_t v = now.chart.border_count(); v < now.mesh_vertex.size(); ++v) {
-      const std::uint32_t source = edited_.vertex_source[surface_.vertex[now.mesh_vertex[v]]];
-      if (source != kNew && region_.keys[source] == key) return v;
-    }
-    return kNew;
-  }
-
-  /// The region's first face of a chart.
-  [[nodiscard]] std::uint32_t first_face(ChartId id) const {
-    const auto position = std::ranges::lower_bound(region_.charts, id) - region_.charts.begin();
-    return static_cast<std::uint32_t>(
-        std::ranges::lower_bound(region_.chart_of_face, static_cast<std::uint32_t>(position)) -
-        region_.chart_of_face.begin());
-  }
-
-  /// Whether nothing of a chart's values and exact positions changes, and no polygon of it.
-  [[nodiscard]] bool same_values(std::uint32_t c) const {
-    const NetChart& now = net_.charts[c];
-    for (const std::uint32_t v : now.mesh_vertex)
-      if (!same_at(AttributeOf::vertex, surface_.vertex[v], edited_.vertex_source[surface_.vertex[v]]) ||
-          !same_exact(surface_.vertex[v]))
-        return false;
-    for (const std::uint32_t f : now.mesh_face) {
-      const std::uint32_t face = surface_.face[f], source = edited_.face_source[face];
-      if (!same_at(AttributeOf::face, face, source) ||
-          polygon_size(edited_.mesh, face) != polygon_size(region_, source))
-        return false;
-      for (std::uint32_t i = 0; i < 3; ++i)
-        if (!same_at(AttributeOf::corner, 3 * face + i, 3 * source + i)) return false;
-    }
-    return true;
-  }
-
-  static std::uint32_t polygon_size(const RegionMesh& mesh, std::uint32_t face) {
-    return mesh.polygon_of_face.empty() ? 3 : mesh.polygon_sizes[mesh.polygon_of_face[face]];
-  }
-
-  [[nodiscard]] bool same_exact(std::uint32_t vertex) const {
-    if (region_.exact.empty()) return true;
-    const Point &now = edited_.mesh.exact[vertex], &was = region_.exact[edited_.vertex_source[vertex]];
-    return std::memcmp(&now, &was, sizeof now) == 0;
-  }
-
-  [[nodiscard]] bool same_at(AttributeOf of, std::size_t now, std::size_t was) const {
-    for (std::size_t a = 0; a < region_.attributes.size(); ++a) {
-      const Attribute &after = edited_.mesh.attributes[a], &before = region_.attributes[a];
-      if (before.info.of != of) continue;
-      for (std::size_t i = 0; i < before.info.components; ++i) {
-        const double x = after.values[now * before.info.components + i];
-        const double y = before.values[was * before.info.components + i];
-        if (std::bit_cast<std::uint64_t>(x) != std::bit_cast<std::uint64_t>(y) && !(std::isnan(x) && std::isnan(y)))
-          return false;
-      }
-    }
-    return true;
   }
 
   void drop_old_charts() {

@@ -108,6 +108,7 @@ class SurfaceBuilder {
       if (position_of(region_.charts[region_.chart_of_face[f]]) == kNew) continue;
       const Triangle& t = region_.faces[f];
       out_.before.faces.push_back({add(t[0]), add(t[1]), add(t[2])});
+      if (!region_.polygon_of_face.empty()) out_.before.polygon_of_face.push_back(region_.polygon_of_face[f]);
     }
     for (std::uint32_t v = 0; v < region_.keys.size(); ++v)
       if (region_.keys[v].where == VertexKey::Where::chart && position_of(ChartId(region_.keys[v].id)) != kNew)
@@ -173,6 +174,15 @@ class SurfaceBuilder {
         out_.around_before.faces.push_back(was);
         out_.around.faces.push_back(is);
       }
+    give_polygons(out_.around_before);
+    give_polygons(out_.around);
+  }
+
+  /// Where a mesh has polygons, the faces behind those that have one are polygons of their own.
+  static void give_polygons(chartify::IndexedMesh& mesh) {
+    if (mesh.polygon_of_face.empty()) return;
+    std::uint32_t next = std::ranges::max(mesh.polygon_of_face);
+    while (mesh.polygon_of_face.size() < mesh.faces.size()) mesh.polygon_of_face.push_back(++next);
   }
 
   const Snapshot::Impl& at_;

@@ -1,6 +1,8 @@
 #include "api/topology.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -45,6 +47,23 @@ void for_each_edge(const std::vector<Pass>& passes, Visit&& edge) {
   }
 }
 
+/// How often faces pass an edge either way. What a polygon passes both ways is inside it.
+struct Passes {
+  std::size_t forward = 0, backward = 0;
+
+  Passes(const chartify::IndexedMesh& mesh, std::span<const Pass> edge) {
+    if (mesh.polygon_of_face.empty()) {
+      for (const Pass& pass : edge) ++(pass.forward ? forward : backward);
+      return;
+    }
+    std::map<std::uint32_t, std::ptrdiff_t> net;
+    for (const Pass& pass : edge) net[mesh.polygon_of_face[pass.corner / 3]] += pass.forward ? 1 : -1;
+    for (const auto& [polygon, count] : net)
+      (count > 0 ? forward : backward) += static_cast<std::size_t>(std::abs(count));
+  }
+  [[nodiscard]] std::size_t all() const { return forward + backward; }
+};
+
 /// Vertices whose face corners stay in several groups after corners are joined over every edge at the vertex.
 std::uint64_t count_nonmanifold_vertices(const chartify::IndexedMesh& mesh, const std::vector<Pass>& passes) {
   DisjointSets corners(mesh.faces.size() * 3);
@@ -54,9 +73,10 @@ std::uint64_t count_nonmanifold_vertices(const chartify::IndexedMesh& mesh, cons
     return mesh.faces[face][i] == vertex ? corner : 3 * face + (i + 1) % 3;
   };
   for_each_edge(passes, [&](std::span<const Pass> edge) {
+    const bool is_bad = edge.size() > 2 && Passes(mesh, edge).all() > 2;
     for (const std::uint32_t v : {edge[0].low, edge[0].high}) {
       for (const Pass& pass : edge) corners.join(corner_at(edge[0].corner, v), corner_at(pass.corner, v));
-      if (edge.size() > 2) on_bad_edge[v] = true;
+      on_bad_edge[v] = on_bad_edge[v] || is_bad;
     }
   });
   constexpr std::uint32_t kNone = ~std::uint32_t{0};
@@ -73,13 +93,29 @@ std::uint64_t count_nonmanifold_vertices(const chartify::IndexedMesh& mesh, cons
   return static_cast<std::uint64_t>(std::count(split.begin(), split.end(), true));
 }
 
-std::uint64_t count_duplicates(const std::vector<Triangle>& faces) {
-  std::vector<Triangle> sorted(faces);
-  for (Triangle& t : sorted) std::sort(t.begin(), t.end());
-  std::sort(sorted.begin(), sorted.end());
-  std::uint64_t duplicates = 0;
-  for (std::size_t i = 1; i < sorted.size(); ++i) duplicates += sorted[i] == sorted[i - 1];
-  return duplicates;
+std::uint64_t count_equal(auto& sets) {
+  std::sort(sets.begin(), sets.end());
+  std::uint64_t equal = 0;
+  for (std::size_t i = 1; i < sets.size(); ++i) equal += sets[i] == sets[i - 1];
+  return equal;
+}
+
+std::uint64_t count_duplicates(const chartify::IndexedMesh& mesh) {
+  if (mesh.polygon_of_face.empty()) {
+    std::vector<Triangle> sorted(mesh.faces);
+    for (Triangle& t : sorted) std::sort(t.begin(), t.end());
+    return count_equal(sorted);
+  }
+  std::map<std::uint32_t, std::vector<std::uint32_t>> vertices_of;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    for (const std::uint32_t v : mesh.faces[f]) vertices_of[mesh.polygon_of_face[f]].push_back(v);
+  std::vector<std::vector<std::uint32_t>> sorted;
+  for (auto& [polygon, vertices] : vertices_of) {
+    std::sort(vertices.begin(), vertices.end());
+    if (vertices.size() > 3) vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    sorted.push_back(std::move(vertices));
+  }
+  return count_equal(sorted);
 }
 
 }  // namespace
@@ -94,11 +130,12 @@ Topology analyze(const chartify::IndexedMesh& mesh) {
   t.isolated_vertices = static_cast<std::uint64_t>(std::count(used.begin(), used.end(), false));
   const std::vector<Pass> passes = sorted_passes(mesh.faces);
   for_each_edge(passes, [&](std::span<const Pass> edge) {
-    t.nonmanifold_edges += edge.size() > 2;
-    t.inconsistent_edges += edge.size() == 2 && edge[0].forward == edge[1].forward;
+    const Passes by_faces(mesh, edge);
+    t.nonmanifold_edges += by_faces.all() > 2;
+    t.inconsistent_edges += by_faces.all() == 2 && by_faces.forward != 1;
   });
   t.nonmanifold_vertices = count_nonmanifold_vertices(mesh, passes);
-  t.duplicate_faces = count_duplicates(mesh.faces);
+  t.duplicate_faces = count_duplicates(mesh);
   return t;
 }
 

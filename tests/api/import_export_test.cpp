@@ -246,5 +246,46 @@ TEST(Info, PartsAddUpToThePayload) {
   EXPECT_GT(b.store, b.payload);
 }
 
+/// The counts of edges and faces that `info` gives.
+std::vector<std::uint64_t> counts_of(const MeshInfo& info) {
+  return {info.vertices,          info.faces,
+          info.components,        info.boundary_loops,
+          info.nonmanifold_edges, info.nonmanifold_vertices,
+          info.duplicate_faces,   info.inconsistent_edges};
+}
+
+TEST(Import, CountsPolygonsWholeAndSoDoEdits) {
+  TempFolder folder;
+  // Five quads at the edge 1-2, one of them turned over upon another, and a quad far away.
+  std::ofstream(folder / "quads.obj") << "v 0 0 0\nv 0 0 9\nv 9 0 0\nv 9 0 9\nv 0 9 0\nv 0 9 9\nv 0 -9 0\nv 0 -9 9\n"
+                                         "v -9 0 0\nv -9 0 9\nv 50 0 0\nv 50 0 9\nv 59 0 9\nv 59 0 0\n"
+                                         "f 1 2 4 3\nf 2 1 5 6\nf 1 2 8 7\nf 2 1 9 10\nf 10 9 1 2\nf 11 12 13 14\n";
+  Repository::create(folder / "r.ramcdb");
+  Repository repository = Repository::open(folder / "r.ramcdb");
+  ImportOptions importing;
+  importing.bits = 12;
+  const MeshInfo info = repository.import(folder / "quads.obj", importing).info;
+  EXPECT_EQ(info.polygons, 6U);
+  EXPECT_EQ(info.nonmanifold_edges, 1U) << "no diagonal of the two quads in one place";
+  EXPECT_EQ(info.duplicate_faces, 1U);
+
+  const Snapshot before = repository.snapshot();
+  (void)repository.checkout_file(before, before.find({{WholeMesh{}}, 0}), folder / "edited.obj", {});
+  std::ifstream in(folder / "edited.obj");
+  std::string text, line;
+  for (int faces = 0; std::getline(in, line);)
+    if (!line.starts_with("f ") || ++faces > 2) text += line + "\n";
+  std::ofstream(folder / "edited.obj") << text;
+  CommitOptions options;
+  options.message = "two quads less";
+  (void)repository.commit_file(folder / "edited.obj", options);
+  const Snapshot after = repository.snapshot();
+  (void)repository.export_mesh(after, folder / "now.obj", {});
+  importing.lattice = after.lattice();
+  const MeshInfo afresh = repository.import(folder / "now.obj", importing).info;
+  EXPECT_EQ(counts_of(after.info()), counts_of(afresh));
+  EXPECT_EQ(after.info().polygons, 4U);
+}
+
 }  // namespace
 }  // namespace ramcdb::test

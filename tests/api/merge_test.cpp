@@ -1,5 +1,7 @@
 #include <algorithm>
 
+#include "api/page_index.h"
+#include "api/snapshot_impl.h"
 #include "tests/api/temp_repository.h"
 
 /// Edits that meet: merged three ways, on branches, and taken back.
@@ -190,6 +192,71 @@ TEST_F(Merge, RevertOfWhatWasChangedAgainIsAConflict) {
   (void)two.commit(options("two"));
   EXPECT_FALSE(repository_->revert("2", {}, options("back")).conflicts.empty());
   EXPECT_EQ(repository_->resolve("HEAD"), VersionId(3));
+}
+
+/// Splits all faces of a patch in three, some times over.
+void refine(Patch& patch, int times) {
+  auto& mesh = patch.mesh();
+  for (; times > 0; --times) {
+    std::vector<Patch::Mesh::FaceHandle> faces;
+    for (const auto f : mesh.all_faces()) faces.push_back(f);
+    for (const auto f : faces) mesh.split(f, mesh.calc_face_centroid(f));
+  }
+}
+
+PageChart entry_of(const Snapshot& snapshot, std::uint32_t id) {
+  return *detail::find_chart(*snapshot.impl().pages().leaf_of(ChartId(id))->leaf, ChartId(id));
+}
+
+TEST_F(Merge, AChartThatSplitsCutsBordersOfNeighboursThatKeepTheirBlobs) {
+  const Snapshot before = repository_->snapshot();
+  const auto neighbours = before.describe({ChartId(4)}).front().neighbours;
+  Patch* a = nullptr;
+  EditTransaction edit = begin(4, a);
+  refine(*a, 2);
+  const CommitReport report = edit.commit(options("finer"));
+  EXPECT_GT(report.charts_added, 2U);
+  const Snapshot after = repository_->snapshot();
+  std::size_t cut = 0;
+  for (const ChartId id : neighbours) {
+    const PageChart was = entry_of(before, id.value), is = entry_of(after, id.value);
+    EXPECT_EQ(detail::state_of(is), detail::state_of(was)) << "chart " << id.value;
+    cut += is.loops != was.loops;
+  }
+  EXPECT_GT(cut, 0U) << "the new charts' borders end somewhere";
+  EXPECT_EQ(report.charts_reencoded, report.charts_added);
+  expect_whole();
+}
+
+TEST_F(Merge, AFileWhoseBordersOthersCutStaysOneSurface) {
+  const std::filesystem::path file = repository_ / "region.ply";
+  const auto neighbour = repository_->snapshot().describe({ChartId(4)}).front().neighbours.front();
+  std::vector<ChartId> charts{ChartId(4), neighbour};
+  std::sort(charts.begin(), charts.end());
+  (void)repository_->checkout_file(repository_->snapshot(), charts, file, {});
+  Patch* a = nullptr;
+  EditTransaction edit = begin(4, a);
+  refine(*a, 2);
+  (void)edit.commit(options("finer"));
+
+  const RegionMesh region = repository_->snapshot({}, "1").read(charts);
+  std::size_t vertex = 0;
+  while (region.keys[vertex] != VertexKey{VertexKey::Where::chart, neighbour.value, 0}) ++vertex;
+  for (int round = 1; round <= 3; ++round) {
+    auto data = mesh_file::read_mesh(file);
+    data.positions[vertex].z += 5 * repository_->snapshot().lattice().step;
+    mesh_file::MeshOutput out;
+    out.positions = data.positions;
+    out.corners = data.corners;
+    (void)mesh_file::write_mesh(file, mesh_file::Format::ply, out);
+    const CommitReport report = repository_->commit_file(file, options("mine"));
+    EXPECT_TRUE(report.conflicts.empty());
+    EXPECT_EQ(report.vertices_moved, 1U) << "round " << round;
+    EXPECT_EQ(report.faces_added + report.faces_removed, 0U);
+    EXPECT_TRUE(repository_->status_file(file).clean());
+  }
+  EXPECT_EQ(repository_->snapshot().info().faces, repository_->snapshot({}, "2").info().faces);
+  expect_whole();
 }
 
 }  // namespace
