@@ -39,7 +39,8 @@ class OurCharts {
  public:
   OurCharts(const std::vector<chartify::NetChart>& charts, codec::Profile profile, const LatticeBox& range,
             std::uint64_t vertices)
-      : charts_(charts), profile_(profile), range_(range), blobs_(charts.size()) {
+      : charts_(charts), profile_(profile), range_(range), on_wires_(vertices), blobs_(charts.size()) {
+    for (const auto& chart : charts) on_wires_ -= chart.chart.positions.size() - chart.chart.border_count();
     if (profile == codec::Profile::dense) {
       std::vector<const Chart*> all;
       for (const auto& chart : charts) all.push_back(&chart.chart);
@@ -58,17 +59,20 @@ class OurCharts {
     }
   }
 
-  /// Returns the number of faces.
-  [[nodiscard]] std::size_t decode(unsigned threads = 1) const {
-    std::atomic<std::size_t> next{0}, faces{0};
+  [[nodiscard]] CameBack decode(unsigned threads = 1) const {
+    std::atomic<std::size_t> next{0}, faces{0}, inner{0};
     const auto work = [&] {
-      for (std::size_t c = next++; c < charts_.size(); c = next++) faces += decode_chart(c).chart.faces.size();
+      for (std::size_t c = next++; c < charts_.size(); c = next++) {
+        const Chart chart = decode_chart(c).chart;
+        faces += chart.faces.size();
+        inner += chart.positions.size() - chart.border_count();
+      }
     };
     std::vector<std::jthread> others;
     for (unsigned t = 1; t < threads; ++t) others.emplace_back(work);
     work();
     others.clear();
-    return faces;
+    return {faces, on_wires_ + inner};
   }
 
   [[nodiscard]] Contestant sizes(const std::string& name, const MeshInfo& info) const {
@@ -98,6 +102,7 @@ class OurCharts {
   const std::vector<chartify::NetChart>& charts_;
   codec::Profile profile_;
   LatticeBox range_;
+  std::uint64_t on_wires_;  ///< vertices that charts share
   codec::CoderTables tables_;
   std::vector<Buffer> blobs_;
 };
@@ -173,7 +178,7 @@ CoderFigures measure_coder(const std::filesystem::path& file, const std::filesys
   std::vector<std::unique_ptr<Peer>> peers;
   std::vector<Buffer> peer_bytes(8);
   std::vector<Turn> turns;
-  std::vector<std::size_t> faces_back(32);
+  std::vector<CameBack> all_back(32);
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
   for (const std::uint32_t faces : options.chart_faces) {
     cuts.push_back(std::make_unique<CutMesh>(file, scratch / std::to_string(faces), options.bits, faces));
@@ -184,7 +189,7 @@ CoderFigures measure_coder(const std::filesystem::path& file, const std::filesys
           std::make_unique<OurCharts>(cut.charts, profile.profile, cut.range, cut.mesh.positions.size()));
       charts.encode();
       figures.contestants.push_back(charts.sizes(fmt::format("{}, {}", profile.name, faces), cut.info[p]));
-      std::size_t& back = faces_back[turns.size()];
+      CameBack& back = all_back[turns.size()];
       turns.push_back({[&charts] { charts.encode(); }, [&charts, &back] { back = charts.decode(); },
                        [&charts, cores] { (void)charts.decode(cores); }});
     }
@@ -195,8 +200,8 @@ CoderFigures measure_coder(const std::filesystem::path& file, const std::filesys
   for (std::size_t p = 0; p < peers.size(); ++p) {
     Buffer& bytes = peer_bytes[p];
     bytes = peers[p]->encode();
-    figures.contestants.push_back({.name = peers[p]->name(), .bytes = bytes.size()});
-    std::size_t& back = faces_back[turns.size()];
+    figures.contestants.push_back({.name = peers[p]->name(), .bytes = bytes.size(), .back = {}});
+    CameBack& back = all_back[turns.size()];
     turns.push_back({[&peer = *peers[p], &bytes] { bytes = peer.encode(); },
                      [&peer = *peers[p], &bytes, &back] { back = peer.decode(bytes); },
                      {}});
@@ -210,7 +215,7 @@ CoderFigures measure_coder(const std::filesystem::path& file, const std::filesys
   const auto faces = static_cast<double>(figures.faces);
   for (std::size_t t = 0; t < turns.size(); ++t) {
     Contestant& contestant = figures.contestants[t];
-    contestant.faces = faces_back[t];
+    contestant.back = all_back[t];
     contestant.encode = faces / median(turns[t].encode_seconds);
     contestant.decode = faces / median(turns[t].decode_seconds);
     if (turns[t].decode_all) contestant.decode_all = faces / median(turns[t].decode_all_seconds);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ramcdb/figures.h"
+#include "tools/benchmark/peer.h"
 
 namespace ramcdb::benchmark {
 
@@ -16,8 +17,14 @@ struct Contestant {
   std::uint64_t bytes = 0;  ///< everything that opening the mesh takes; of ours without attributes
   /// Of ours: what `bytes` are made of, by the encoder's own count; index are pages, chart headers and tables.
   std::uint64_t connectivity = 0, geometry = 0, wires = 0, index = 0;
-  std::uint64_t faces = 0;  ///< that came back: Draco and meshes of others may drop degenerate ones
+  CameBack back;  ///< Draco and others may drop degenerate faces and isolated vertices
   double encode = 0, decode = 0, decode_all = 0;
+
+  /// What so many of its bytes are for each vertex that came back.
+  [[nodiscard]] double bits_per_vertex(std::uint64_t of_bytes) const {
+    return 8 * static_cast<double>(of_bytes) / static_cast<double>(back.vertices);
+  }
+  [[nodiscard]] double bits_per_vertex() const { return bits_per_vertex(bytes); }
 };
 
 struct CoderFigures {

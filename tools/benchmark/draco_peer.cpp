@@ -2,6 +2,7 @@
 #include <draco/compression/encode.h>
 #include <draco/mesh/mesh.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "tools/benchmark/peer.h"
@@ -37,13 +38,14 @@ class Draco : public Peer {
     return {buffer.data(), buffer.data() + buffer.size()};
   }
 
-  [[nodiscard]] std::size_t decode(Bytes bytes) const override {
+  [[nodiscard]] CameBack decode(Bytes bytes) const override {
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     draco::Decoder decoder;
     auto result = decoder.DecodeMeshFromBuffer(&buffer);
     if (!result.ok()) throw std::runtime_error("Draco cannot read what it wrote");
-    return result.value()->num_faces();
+    const draco::Mesh& mesh = *result.value();  // non-manifold vertices come back as several points
+    return {mesh.num_faces(), std::min<std::size_t>(mesh.num_points(), mesh_.num_points())};
   }
 
  private:

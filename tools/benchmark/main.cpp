@@ -81,29 +81,21 @@ json mesh_json(const ramcdb::MeshInfo& info) {
 }
 
 json contestant_json(const Contestant& c) {
-  return {{"name", c.name},
-          {"bytes", c.bytes},
-          {"connectivity", c.connectivity},
-          {"geometry", c.geometry},
-          {"wires", c.wires},
-          {"index", c.index},
-          {"faces", c.faces},
-          {"encode", c.encode},
-          {"decode", c.decode},
-          {"decode_all", c.decode_all}};
+  return {{"name", c.name},     {"bytes", c.bytes},   {"connectivity", c.connectivity}, {"geometry", c.geometry},
+          {"wires", c.wires},   {"index", c.index},   {"faces", c.back.faces},          {"vertices", c.back.vertices},
+          {"encode", c.encode}, {"decode", c.decode}, {"decode_all", c.decode_all}};
 }
 
 json coder_table(const CoderFigures& f) {
-  const auto bpv = [&](std::uint64_t bytes) {
-    return 8 * static_cast<double>(bytes) / static_cast<double>(f.vertices);
-  };
-  const double cl10 = bpv(f.find("Draco cl10").bytes);
+  const double cl10 = f.find("Draco cl10").bits_per_vertex();
   fmt::print("\n### {}: {} faces, {} vertices\n\n{}", f.mesh, f.faces, f.vertices, kCoderHead);
   json rows = json::array();
   for (const Contestant& c : f.contestants) {
-    const auto part = [&](std::uint64_t bytes) { return c.connectivity ? fmt::format("{:.2f}", bpv(bytes)) : ""; };
-    fmt::print("| {} | {:.2f} | {:.3f} | {} | {} | {} | {} | {:.2f} | {:.2f} | {} |\n", c.name, bpv(c.bytes),
-               bpv(c.bytes) / cl10, part(c.connectivity), part(c.geometry), part(c.wires), part(c.index),
+    const auto part = [&](std::uint64_t bytes) {
+      return c.connectivity ? fmt::format("{:.2f}", c.bits_per_vertex(bytes)) : "";
+    };
+    fmt::print("| {} | {:.2f} | {:.3f} | {} | {} | {} | {} | {:.2f} | {:.2f} | {} |\n", c.name, c.bits_per_vertex(),
+               c.bits_per_vertex() / cl10, part(c.connectivity), part(c.geometry), part(c.wires), part(c.index),
                c.encode / 1e6, c.decode / 1e6, c.decode_all > 0 ? fmt::format("{:.2f}", c.decode_all / 1e6) : "");
     rows.push_back(contestant_json(c));
   }
@@ -120,8 +112,8 @@ json coder_table(const CoderFigures& f) {
           {"chart", {{"bytes", f.chart_bytes}, {"blobs", f.chart_blobs}, {"seconds", f.chart_seconds}}}};
 }
 
-/// Ours against Draco's level that it is measured by, over all meshes: sizes as geometric mean and worst, speeds as
-/// medians of ratios of the same run.
+/// Ours against Draco's level that it is measured by, over all meshes: bits per vertex that came back as geometric mean
+/// and worst, speeds as medians of ratios of the same run.
 void print_summary(const std::vector<CoderFigures>& all) {
   fmt::print("\n## Over {} meshes\n\n{}", all.size(), kSummaryHead);
   for (const Contestant& ours : all.front().contestants) {
@@ -131,7 +123,7 @@ void print_summary(const std::vector<CoderFigures>& all) {
     std::vector<double> encode, decode;
     for (const CoderFigures& f : all) {
       const Contestant &a = f.find(ours.name), &b = f.find(peer);
-      const double ratio = static_cast<double>(a.bytes) / static_cast<double>(b.bytes);
+      const double ratio = a.bits_per_vertex() / b.bits_per_vertex();
       log_sum += std::log(ratio);
       worst = std::max(worst, ratio);
       encode.push_back(a.encode / b.encode);

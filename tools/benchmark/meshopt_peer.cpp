@@ -35,7 +35,7 @@ class Meshopt : public Peer {
     return packed(bytes);
   }
 
-  [[nodiscard]] std::size_t decode(Bytes bytes) const override {
+  [[nodiscard]] CameBack decode(Bytes bytes) const override {
     const Buffer whole = unpacked(bytes);
     std::vector<unsigned> indices(indices_.size());
     std::vector<LatticePoint> vertices(used_);
@@ -43,7 +43,7 @@ class Meshopt : public Peer {
         meshopt_decodeVertexBuffer(vertices.data(), used_, sizeof(LatticePoint), whole.data() + index_size_,
                                    whole.size() - index_size_) != 0)
       throw std::runtime_error("meshoptimizer cannot read what it wrote");
-    return indices.size() / 3;
+    return {indices.size() / 3, used_};
   }
 
  private:

@@ -47,14 +47,15 @@ class OpenCtm : public Peer {
     return bytes;
   }
 
-  [[nodiscard]] std::size_t decode(Bytes bytes) const override {
+  [[nodiscard]] CameBack decode(Bytes bytes) const override {
     const CTMcontext context = ctmNewContext(CTM_IMPORT);
     ctmLoadCustom(context, take, &bytes);
     const CTMuint faces = ctmGetInteger(context, CTM_TRIANGLE_COUNT);
+    const CTMuint vertices = ctmGetInteger(context, CTM_VERTEX_COUNT);
     const CTMenum error = ctmGetError(context);
     ctmFreeContext(context);
     if (error != CTM_NONE) throw std::runtime_error("OpenCTM cannot read what it wrote");
-    return faces;
+    return {faces, vertices};
   }
 
  private:

@@ -12,14 +12,19 @@ namespace ramcdb::benchmark {
 /// What the store adds to a blob, which is counted with it.
 inline constexpr std::uint64_t kBlobOverhead = 8;
 
+/// How much of a mesh came back. Some coders drop degenerate faces or vertices without faces.
+struct CameBack {
+  std::size_t faces = 0, vertices = 0;
+};
+
 /// Another coder, given a whole mesh on the lattice: all contestants code the same numbers.
 class Peer {
  public:
   virtual ~Peer() = default;
   [[nodiscard]] virtual std::string name() const = 0;
   [[nodiscard]] virtual Buffer encode() const = 0;
-  /// Decodes to the end and returns the number of faces.
-  [[nodiscard]] virtual std::size_t decode(Bytes bytes) const = 0;
+  /// Decodes to the end.
+  [[nodiscard]] virtual CameBack decode(Bytes bytes) const = 0;
 };
 
 /// Google's Draco. `level` is its compression level: 10 packs best, 7 is its tools' default.

@@ -25,7 +25,7 @@ std::vector<Dot> dots_of(const std::vector<CoderFigures>& figures) {
     std::vector<double> speeds;
     for (const CoderFigures& f : figures) {
       const Contestant& c = f.find(contestant.name);
-      log_sum += std::log(static_cast<double>(c.bytes) / static_cast<double>(f.find("Draco cl10").bytes));
+      log_sum += std::log(c.bits_per_vertex() / f.find("Draco cl10").bits_per_vertex());
       speeds.push_back(c.decode / 1e6);
     }
     dots.push_back({contestant.name, std::exp(log_sum / static_cast<double>(figures.size())), median(speeds)});

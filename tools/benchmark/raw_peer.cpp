@@ -31,9 +31,10 @@ class Raw : public Peer {
     return packed(bytes);
   }
 
-  [[nodiscard]] std::size_t decode(Bytes bytes) const override {
+  [[nodiscard]] CameBack decode(Bytes bytes) const override {
     const Buffer whole = unpacked(bytes);
-    return (whole.size() - 3 * number_bytes_ * mesh_.positions.size()) / (3 * index_bytes_);
+    const std::size_t vertices = mesh_.positions.size();
+    return {(whole.size() - 3 * number_bytes_ * vertices) / (3 * index_bytes_), vertices};
   }
 
  private:
