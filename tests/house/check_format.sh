@@ -6,10 +6,9 @@ cd "$1"
 command -v clang-format >/dev/null || { echo "skipped: no clang-format"; exit 77; }
 git rev-parse --git-dir >/dev/null 2>&1 || { echo "skipped: not a git checkout"; exit 77; }
 
-bad=()
-while IFS= read -r file; do
-  clang-format --dry-run -Werror "$file" >/dev/null 2>&1 || bad+=("$file")
-done < <(git ls-files '*.h' '*.cpp')
+mapfile -t bad < <(git ls-files -z '*.h' '*.cpp' | xargs -0 clang-format --dry-run 2>&1 |
+                   sed -n 's/^\([^:]*\):[0-9]*:[0-9]*: warning: .*/\1/p' | sort -u)
+wait $!  # what could not be read is no success
 [ ${#bad[@]} -gt 0 ] || exit 0
 printf '%d files are not formatted:\n' ${#bad[@]}
 printf '  %s\n' "${bad[@]}"
