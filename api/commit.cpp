@@ -13,6 +13,7 @@
 #include "api/chart_difference.h"
 #include "api/locks.h"
 #include "api/page_rewriter.h"
+#include "api/progress.h"
 #include "api/store_format.h"
 #include "api/three_way.h"
 #include "api/version_figures.h"
@@ -158,9 +159,11 @@ class TipPublisher {
       const auto lock = tries < kTriesWithoutLock ? nullptr : store_->writer();
       const VersionId tip = lock ? lock->tip(branch_) : store_->tip(branch_);
       const Snapshot::Impl at = snapshot_of(tip || options_.onto.empty() ? tip : base_.version());
+      begin_stage(options_.progress, "encode");
       std::optional<EncodedEdit> edit = encode_(at);
       if (!edit) return;
       count_coded(*edit, report_);
+      begin_stage(options_.progress, "store");
       if (publish(tip, at, *edit, lock ? *lock : *store_->writer())) return;
     }
   }
