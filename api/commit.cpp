@@ -213,14 +213,18 @@ class TipPublisher {
   CommitReport& report_;
 };
 
-/// The charts that an edit touches, as a tip has them, and the edit of these.
+/// The charts that an edit touches, as a tip has them, and the edit of these: all that it holds, as a rule, of the very
+/// tip.
 EncodedEdit encode_on(const Snapshot::Impl& tip, const PendingEdit& edit, unsigned threads) {
-  const RegionPart part{&tip, {edit.changes.touched.begin(), edit.changes.touched.end()}};
-  RegionMesh region = load_region(std::span(&part, 1), threads, nullptr, true);
-  EditedRegion edited = transferred(edit.edited, edit.region, region);
   const auto may_recut = [&](ChartId id) {
     return edit.may_recut_outside || std::ranges::binary_search(edit.region.charts, id);
   };
+  const bool touches_all = std::ranges::equal(edit.changes.touched, edit.region.charts);
+  if (touches_all && edit.parts.size() == 1 && edit.parts.front().at->root() == tip.root())
+    return encode_edit(tip, edit.region, edit.edited, may_recut, threads);
+  const RegionPart part{&tip, {edit.changes.touched.begin(), edit.changes.touched.end()}};
+  RegionMesh region = load_region(std::span(&part, 1), threads, nullptr, true);
+  EditedRegion edited = transferred(edit.edited, edit.region, region);
   return encode_edit(tip, std::move(region), std::move(edited), may_recut, threads);
 }
 
