@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
+#include <span>
 
 #include "api/region_mesh.h"
 
@@ -29,40 +29,49 @@ class BorderOfChange {
   void add(std::uint32_t chart, const Triangle& t, int sign) {
     for (int i = 0; i < 3; ++i) {
       const std::uint32_t u = t[i], v = t[(i + 1) % 3];
-      if (u != v) edges_.push_back({chart, std::min(u, v), std::max(u, v), u < v ? sign : -sign});
+      const std::uint64_t edge = (std::uint64_t{std::min(u, v)} << 32) | std::max(u, v);
+      if (u != v) edges_.push_back({chart, edge, u < v ? sign : -sign});
     }
   }
 
-  [[nodiscard]] bool is_closed() {
-    std::ranges::sort(edges_, {}, [](const Edge& e) { return std::tie(e.u, e.v); });
-    return cancels(0, edges_.size());
-  }
   /// The charts whose part of the change has a border of its own.
   [[nodiscard]] std::vector<std::uint32_t> open_charts() {
-    std::ranges::sort(edges_, {}, [](const Edge& e) { return std::tie(e.chart, e.u, e.v); });
+    std::ranges::sort(edges_);
     std::vector<std::uint32_t> open;
+    std::vector<Edge> left;
     for (std::size_t first = 0, end; first < edges_.size(); first = end) {
       const std::uint32_t chart = edges_[first].chart;
       for (end = first; end < edges_.size() && edges_[end].chart == chart;) ++end;
-      if (!cancels(first, end)) open.push_back(chart);
+      if (!cancel(std::span(edges_).subspan(first, end - first), left)) open.push_back(chart);
     }
+    edges_ = std::move(left);
     return open;
+  }
+  /// Whether they have none together.
+  [[nodiscard]] bool is_closed() {
+    for (Edge& e : edges_) e.chart = 0;
+    std::ranges::sort(edges_);
+    std::vector<Edge> left;
+    return cancel(edges_, left);
   }
 
  private:
   struct Edge {
-    std::uint32_t chart, u, v;
-    int sign;
+    std::uint32_t chart = 0;
+    std::uint64_t vertices = 0;
+    int sign = 0;
+    friend auto operator<=>(const Edge&, const Edge&) = default;
   };
 
-  [[nodiscard]] bool cancels(std::size_t first, std::size_t end) const {
-    int sum = 0;
-    for (std::size_t i = first; i < end; ++i) {
-      sum += edges_[i].sign;
-      const bool last = i + 1 == end || edges_[i + 1].u != edges_[i].u || edges_[i + 1].v != edges_[i].v;
-      if (last && sum != 0) return false;
+  /// Adds to `left` what is left of the edges of a chart, in order; true when that is nothing.
+  static bool cancel(std::span<const Edge> edges, std::vector<Edge>& left) {
+    const std::size_t before = left.size();
+    for (std::size_t i = 0, end; i < edges.size(); i = end) {
+      Edge sum{edges[i].chart, edges[i].vertices, 0};
+      for (end = i; end < edges.size() && edges[end].vertices == sum.vertices;) sum.sign += edges[end++].sign;
+      if (sum.sign != 0) left.push_back(sum);
     }
-    return true;
+    return left.size() == before;
   }
 
   std::vector<Edge> edges_;
@@ -241,8 +250,8 @@ class Measurement {
       total.area_after += of.area_after;
       *total.volume_change += *of.volume_change;
     }
-    if (!border.is_closed()) total.volume_change.reset();
     for (const std::uint32_t open : border.open_charts()) out_.per_chart[open].volume_change.reset();
+    if (!border.is_closed()) total.volume_change.reset();
   }
 
   const RegionMesh& region_;

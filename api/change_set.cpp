@@ -142,9 +142,12 @@ class Comparison {
 
   void add_charts_at(const std::vector<EdgeUse>& changed) {
     if (changed.empty()) return;
+    std::vector<bool> at_changed(region_.points.size(), false);
+    for (const EdgeUse& edge : changed) at_changed[edge.a] = at_changed[edge.b] = true;
     for (std::uint32_t f = 0; f < region_.faces.size(); ++f)
       for (int i = 0; i < 3; ++i) {
         const EdgeUse edge(region_.faces[f][i], region_.faces[f][(i + 1) % 3], 0);
+        if (!at_changed[edge.a] || !at_changed[edge.b]) continue;
         if (std::ranges::binary_search(changed, edge)) set_.recut.insert(region_.charts[region_.chart_of_face[f]]);
       }
   }

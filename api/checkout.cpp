@@ -10,6 +10,7 @@
 #include "api/commit.h"
 #include "api/heatmap.h"
 #include "api/locks.h"
+#include "api/progress.h"
 #include "api/region_file.h"
 #include "api/sidecar.h"
 #include "ramcdb/error.h"
@@ -64,7 +65,9 @@ const db::MeshRoot& root_named(const std::vector<db::MeshRoot>& roots, const std
   return *it;
 }
 
-EditedFile read_edited_file(const std::shared_ptr<db::Store>& store, const std::filesystem::path& file) {
+EditedFile read_edited_file(const std::shared_ptr<db::Store>& store, const std::filesystem::path& file,
+                            const Progress& progress) {
+  begin_stage(progress, "read charts");
   EditedFile edited;
   edited.sidecar = read_sidecar(file);
   if (edited.sidecar.repository_id != store->id())
@@ -81,9 +84,10 @@ EditedFile read_edited_file(const std::shared_ptr<db::Store>& store, const std::
   }
   PendingEdit& edit = edited.edit;
   edit.region = load_region(edit.parts, 1, nullptr, true);
-  const mesh_file::MeshData data = mesh_file::read_mesh(file);
+  const mesh_file::MeshData data = mesh_file::read_mesh(file, stage(progress, "read file"));
   const Snapshot::Impl& at = *edit.parts.front().at;
   const bool trust_ids = edit.parts.size() == 1 && edited.sidecar.ids_version == at.version();
+  begin_stage(progress, "match");
   try {
     FileEdit found = edited_in_file(at, edit.region, data, edited.sidecar.local_origin, trust_ids);
     edit.edited = std::move(found.edited);
@@ -169,7 +173,7 @@ CheckoutReport export_mesh(const Snapshot& snapshot, const std::filesystem::path
 ChangeReport status_of_file(const std::shared_ptr<db::Store>& store, const std::filesystem::path& file,
                             const std::filesystem::path& heatmap) {
   if (!heatmap.empty()) require_heatmap_file(heatmap);
-  const EditedFile edited = read_edited_file(store, file);
+  const EditedFile edited = read_edited_file(store, file, {});
   ChangeReport report = describe_edit(edited.edit);
   if (!heatmap.empty()) write_heatmap(edited.edit.base(), heat_of_edit(edited.edit), report.max_displacement, heatmap);
   compare_with_tip(report, edited.edit.parts, "main");
@@ -179,7 +183,7 @@ ChangeReport status_of_file(const std::shared_ptr<db::Store>& store, const std::
 CommitReport commit_file(const std::shared_ptr<db::Store>& store, const std::filesystem::path& file,
                          const CommitOptions& options) {
   const auto start = Clock::now();
-  EditedFile edited = read_edited_file(store, file);
+  EditedFile edited = read_edited_file(store, file, options.progress);
   CommitReport report =
       commit_edit(edited.edit, options, attempt_name(edited.sidecar.nonce, options.branch, edited.edit));
   if (report.conflicts.empty() && !report.nothing_changed) {

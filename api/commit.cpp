@@ -13,6 +13,7 @@
 #include "api/chart_difference.h"
 #include "api/locks.h"
 #include "api/page_rewriter.h"
+#include "api/progress.h"
 #include "api/store_format.h"
 #include "api/three_way.h"
 #include "api/version_figures.h"
@@ -158,9 +159,11 @@ class TipPublisher {
       const auto lock = tries < kTriesWithoutLock ? nullptr : store_->writer();
       const VersionId tip = lock ? lock->tip(branch_) : store_->tip(branch_);
       const Snapshot::Impl at = snapshot_of(tip || options_.onto.empty() ? tip : base_.version());
+      begin_stage(options_.progress, "encode");
       std::optional<EncodedEdit> edit = encode_(at);
       if (!edit) return;
       count_coded(*edit, report_);
+      begin_stage(options_.progress, "store");
       if (publish(tip, at, *edit, lock ? *lock : *store_->writer())) return;
     }
   }
@@ -210,14 +213,18 @@ class TipPublisher {
   CommitReport& report_;
 };
 
-/// The charts that an edit touches, as a tip has them, and the edit of these.
+/// The charts that an edit touches, as a tip has them, and the edit of these: all that it holds, as a rule, of the very
+/// tip.
 EncodedEdit encode_on(const Snapshot::Impl& tip, const PendingEdit& edit, unsigned threads) {
-  const RegionPart part{&tip, {edit.changes.touched.begin(), edit.changes.touched.end()}};
-  RegionMesh region = load_region(std::span(&part, 1), threads, nullptr, true);
-  EditedRegion edited = transferred(edit.edited, edit.region, region);
   const auto may_recut = [&](ChartId id) {
     return edit.may_recut_outside || std::ranges::binary_search(edit.region.charts, id);
   };
+  const bool touches_all = std::ranges::equal(edit.changes.touched, edit.region.charts);
+  if (touches_all && edit.parts.size() == 1 && edit.parts.front().at->root() == tip.root())
+    return encode_edit(tip, edit.region, edit.edited, may_recut, threads);
+  const RegionPart part{&tip, {edit.changes.touched.begin(), edit.changes.touched.end()}};
+  RegionMesh region = load_region(std::span(&part, 1), threads, nullptr, true);
+  EditedRegion edited = transferred(edit.edited, edit.region, region);
   return encode_edit(tip, std::move(region), std::move(edited), may_recut, threads);
 }
 

@@ -8,6 +8,7 @@
 #include "api/lattice_choice.h"
 #include "api/mesh_encoder.h"
 #include "api/mesh_file/mesh_file.h"
+#include "api/progress.h"
 #include "api/store_format.h"
 #include "api/topology.h"
 #include "api/version_figures.h"
@@ -18,12 +19,6 @@
 
 namespace ramcdb::detail {
 namespace {
-
-std::function<void(double)> stage(const Progress& progress, std::string_view name) {
-  if (!progress) return {};
-  progress(name, 0);
-  return [&progress, name](double done) { progress(name, done); };
-}
 
 std::string mesh_name(const std::filesystem::path& file, const ImportOptions& options) {
   std::string name = options.name.empty() ? file.stem().string() : options.name;
@@ -225,7 +220,7 @@ ImportReport import_mesh(db::Store& store, const std::filesystem::path& file, co
   EncodedMesh encoded =
       encode_mesh(canonical.mesh, net, layers, record, tables, options.threads, stage(options.progress, "encode"));
   note_encoding(record, encoded);
-  stage(options.progress, "store");
+  begin_stage(options.progress, "store");
   publish(store, name, file, options, encoded, layers.table(), record);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;

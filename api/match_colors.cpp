@@ -22,7 +22,6 @@ class VertexColors {
     }
   }
 
-  [[nodiscard]] bool all_paired() const { return open_.empty(); }
   void refine() {
     std::vector<std::uint64_t> refined(open_.size());
     for (std::size_t i = 0; i < open_.size(); ++i) refined[i] = around(open_[i]);
@@ -78,9 +77,9 @@ RareFaces rare_faces(const Surface& s, const VertexColors& colors, IsOpen&& is_o
   return rare;
 }
 
+/// Faces of both surfaces that are alike.
 struct Seed {
-  std::uint32_t face;
-  FaceMatch match;
+  std::uint32_t to, from;
 };
 
 class RareFaceWalk {
@@ -89,17 +88,17 @@ class RareFaceWalk {
 
   void run() {
     std::size_t colors_before = 0;
-    color();
     constexpr std::array<int, 3> kRounds{3, 3, 6};
     for (const int rounds : kRounds) {
-      if (from_->all_paired() || to_->all_paired()) return;
+      if (all_paired()) return;
+      if (!from_) color();
       for (int i = 0; i < rounds; ++i) {
         from_->refine();
         to_->refine();
       }
       const std::size_t colors = find_seeds();
       if (walk_from_seeds())
-        color();
+        from_.reset();
       else if (colors == colors_before)
         return;  // further rounds would tell no more vertices apart
       colors_before = colors;
@@ -107,6 +106,17 @@ class RareFaceWalk {
   }
 
  private:
+  /// Whether one surface has no vertex left, with faces, that has no pair.
+  [[nodiscard]] bool all_paired() const {
+    const auto none_left = [](const Rings& rings, std::size_t count, auto&& pair_of) {
+      std::uint32_t v = 0;
+      while (v < count && (pair_of(v) != kNowhere || !rings.degree(v))) ++v;
+      return v == count;
+    };
+    return none_left(state_.from_rings, state_.from.points.size(), [&](auto v) { return state_.pairs.to(v); }) ||
+           none_left(state_.to_rings, state_.to.points.size(), [&](auto w) { return state_.pairs.from(w); });
+  }
+
   void color() {
     from_.emplace(
         state_.from, state_.from_rings, [&](std::uint32_t v) { return state_.pairs.to(v) == kNowhere ? kNowhere : v; },
@@ -116,27 +126,29 @@ class RareFaceWalk {
         [&](std::uint32_t w) { return state_.to_rings.degree(w); });
   }
 
-  /// Returns how many colours the faces of `from` have.
+  /// In order of the faces of `to`. Returns how many colours the faces of `from` have.
   std::size_t find_seeds() {
     const RareFaces mine =
         rare_faces(state_.from, *from_, [&](std::uint32_t v) { return state_.pairs.to(v) == kNowhere; });
     const RareFaces theirs =
         rare_faces(state_.to, *to_, [&](std::uint32_t w) { return state_.pairs.from(w) == kNowhere; });
-    seeds_.clear();
+    std::vector<std::uint32_t> alike(state_.to.face_count(), kNowhere);
     auto f = mine.faces.begin();
     for (const ColoredFace& g : theirs.faces) {
       while (f != mine.faces.end() && f->color < g.color) ++f;
       if (f == mine.faces.end()) break;
-      if (f->color != g.color || state_.from.size(f->face) != state_.to.size(g.face)) continue;
-      if (const auto turn = turn_of(f->face, g.face)) seeds_.push_back({g.face, {f->face, *turn}});
+      if (f->color == g.color && state_.from.size(f->face) == state_.to.size(g.face)) alike[g.face] = f->face;
     }
-    std::ranges::sort(seeds_, {}, &Seed::face);
+    seeds_.clear();
+    for (std::uint32_t g = 0; g < alike.size(); ++g)
+      if (alike[g] != kNowhere) seeds_.push_back({g, alike[g]});
     return mine.colors;
   }
 
   /// The one turn at which the colours of two faces agree.
-  [[nodiscard]] std::optional<std::uint32_t> turn_of(std::uint32_t f, std::uint32_t g) const {
-    std::optional<std::uint32_t> found;
+  [[nodiscard]] std::optional<FaceMatch> match_of(Seed seed) const {
+    const auto [g, f] = seed;
+    std::optional<FaceMatch> found;
     const std::uint32_t size = state_.to.size(g);
     for (std::uint32_t turn = 0; turn < size; ++turn) {
       bool same = true;
@@ -144,24 +156,34 @@ class RareFaceWalk {
         same = (*from_)[state_.from.corners[state_.from.corner(f, i + turn)]] ==
                (*to_)[state_.to.corners[state_.to.corner(g, i)]];
       if (same && found) return std::nullopt;
-      if (same) found = turn;
+      if (same) found = FaceMatch{f, turn};
     }
     return found;
   }
 
   /// From all seeds at once; where that contradicts itself, from each of the first few alone.
   bool walk_from_seeds() {
-    if (seeds_.empty()) return false;
     MatchWalk walk(state_, MatchWalk::Over::moved);
-    for (const Seed& seed : seeds_) walk.from_face(seed.face, seed.match);
+    for (const Seed& seed : seeds_) {
+      if (is_known(seed.to)) continue;
+      if (const auto match = match_of(seed)) walk.from_face(seed.to, *match);
+    }
     if (keep_what_fits(state_, walk.paired())) return true;
-    constexpr std::size_t kTries = 8;
-    for (std::size_t i = 0; i < std::min(kTries, seeds_.size()); ++i) {
+    int tries = 8;
+    for (auto seed = seeds_.begin(); seed != seeds_.end() && tries > 0; ++seed) {
+      const auto match = match_of(*seed);
+      if (!match) continue;
+      --tries;
       MatchWalk alone(state_, MatchWalk::Over::moved);
-      alone.from_face(seeds_[i].face, seeds_[i].match);
+      alone.from_face(seed->to, *match);
       if (keep_what_fits(state_, alone.paired())) return true;
     }
     return false;
+  }
+
+  [[nodiscard]] bool is_known(std::uint32_t g) const {
+    return std::ranges::all_of(state_.to.vertices(g),
+                               [&](std::uint32_t w) { return state_.pairs.from(w) != kNowhere; });
   }
 
   MatchState& state_;

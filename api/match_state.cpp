@@ -31,11 +31,11 @@ bool is_turned(std::span<const std::uint32_t> face, std::uint32_t turn, std::spa
 
 Places::Places(const Surface& from_surface, const Rings& from_rings, const Surface& to_surface, const Rings& to_rings) {
   PointNumbers numbers(from_surface.points.size() + to_surface.points.size());
-  for (const LatticePoint p : from_surface.points) from.push_back(numbers.number(p));
-  for (const LatticePoint p : to_surface.points) to.push_back(numbers.number(p));
+  from = numbers.number(from_surface.points);
+  to = numbers.number(to_surface.points);
   const auto count = [&](const Rings& rings, const std::vector<std::uint32_t>& places, auto& counts, auto& firsts) {
-    counts.assign(numbers.count(), 0);
-    firsts.assign(numbers.count(), kNowhere);
+    counts.assign(numbers.points().size(), 0);
+    firsts.assign(numbers.points().size(), kNowhere);
     for (std::uint32_t v = 0; v < places.size(); ++v)
       if (rings.degree(v) && counts[places[v]]++ == 0) firsts[places[v]] = v;
   };

@@ -8,21 +8,6 @@
 namespace ramcdb::detail {
 namespace {
 
-/// Whether faces of `to` are faces of `from` as the vertices are paired; each is looked up once.
-class FaceTruth {
- public:
-  explicit FaceTruth(MatchState& state) : state_(state), known_(state.to.face_count(), 0) {}
-  bool operator()(std::uint32_t face) {
-    if (!known_[face]) known_[face] = state_.known_cycle(face, cycle_) && state_.faces.has(cycle_) ? 1 : 2;
-    return known_[face] == 1;
-  }
-
- private:
-  MatchState& state_;
-  std::vector<std::uint8_t> known_;
-  std::vector<std::uint32_t> cycle_;
-};
-
 struct Share {
   std::uint64_t kept = 0, all = 0;
   [[nodiscard]] bool at_least(std::uint64_t part, std::uint64_t of) const { return kept * of >= all * part; }
@@ -90,17 +75,21 @@ bool MatchWalk::pair_faces(std::uint32_t face, FaceMatch match) {
 std::size_t keep_what_fits(MatchState& state, const std::vector<std::uint32_t>& paired) {
   std::vector<std::uint32_t> position(state.to.points.size(), kNowhere);
   for (std::uint32_t i = 0; i < paired.size(); ++i) position[paired[i]] = i;
-  FaceTruth survives(state);
+  std::vector<std::uint32_t> cycle;
   DisjointSets groups(paired.size());
   std::vector<Share> shares(paired.size()), of_group(paired.size());
-  for (std::uint32_t i = 0; i < paired.size(); ++i)
-    for (const std::uint32_t c : state.to_rings.of(paired[i])) {
-      const std::uint32_t face = state.to_rings.face(c);
-      ++shares[i].all;
-      shares[i].kept += survives(face);
-      for (const std::uint32_t w : state.to.vertices(face))
-        if (position[w] != kNowhere) groups.join(i, position[w]);
+  for (std::uint32_t g = 0; g < state.to.face_count(); ++g) {
+    const auto vertices = state.to.vertices(g);
+    const auto first = std::ranges::find_if(vertices, [&](std::uint32_t w) { return position[w] != kNowhere; });
+    if (first == vertices.end()) continue;
+    const bool survives = state.known_cycle(g, cycle) && state.faces.has(cycle);
+    for (auto w = first; w != vertices.end(); ++w) {
+      if (position[*w] == kNowhere) continue;
+      ++shares[position[*w]].all;
+      shares[position[*w]].kept += survives;
+      groups.join(position[*first], position[*w]);
     }
+  }
   for (std::uint32_t i = 0; i < paired.size(); ++i) {
     of_group[groups.root(i)].kept += shares[i].kept;
     of_group[groups.root(i)].all += shares[i].all;
@@ -115,14 +104,18 @@ std::size_t keep_what_fits(MatchState& state, const std::vector<std::uint32_t>& 
 }
 
 void match_faces_in_place(MatchState& state) {
-  const auto unknown = [](std::span<const std::uint32_t> vertices, auto&& is_known) {
-    return !std::ranges::all_of(vertices, is_known);
+  // Only faces that are not known yet, and of these only those in whose places the other surface has vertices.
+  const auto may_match = [](std::span<const std::uint32_t> vertices, auto&& is_known, auto&& is_place) {
+    return std::ranges::all_of(vertices, is_place) && !std::ranges::all_of(vertices, is_known);
   };
+  const Places& places = state.places;
   std::vector<std::uint64_t> keys(state.to.face_count(), 0);
   for (std::uint32_t g = 0; g < keys.size(); ++g) {
     const auto vertices = state.to.vertices(g);
-    if (unknown(vertices, [&](std::uint32_t w) { return state.pairs.from(w) != kNowhere; }))
-      keys[g] = hash_of_cycle(state.to.size(g), [&](std::uint32_t i) { return state.places.to[vertices[i]]; });
+    if (may_match(
+            vertices, [&](std::uint32_t w) { return state.pairs.from(w) != kNowhere; },
+            [&](std::uint32_t w) { return places.count_from[places.to[w]] > 0; }))
+      keys[g] = hash_of_cycle(state.to.size(g), [&](std::uint32_t i) { return places.to[vertices[i]]; });
   }
   if (std::ranges::all_of(keys, [](std::uint64_t key) { return key == 0; })) return;
   HashIndex index(std::move(keys));
@@ -131,8 +124,11 @@ void match_faces_in_place(MatchState& state) {
   for (std::uint32_t f = 0; f < state.from.face_count(); ++f) {
     const auto vertices = state.from.vertices(f);
     const std::uint32_t size = state.from.size(f);
-    if (!unknown(vertices, [&](std::uint32_t v) { return state.pairs.to(v) != kNowhere; })) continue;
-    const std::uint64_t key = hash_of_cycle(size, [&](std::uint32_t i) { return state.places.from[vertices[i]]; });
+    if (!may_match(
+            vertices, [&](std::uint32_t v) { return state.pairs.to(v) != kNowhere; },
+            [&](std::uint32_t v) { return places.count_to[places.from[v]] > 0; }))
+      continue;
+    const std::uint64_t key = hash_of_cycle(size, [&](std::uint32_t i) { return places.from[vertices[i]]; });
     (void)index.take(key, kTries, [&](std::uint32_t g) {
       bool found = false;
       for (std::uint32_t turn = 0; state.to.size(g) == size && turn < size && !found; ++turn)

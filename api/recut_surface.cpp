@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <unordered_set>
 
+#include "api/border_links.h"
 #include "api/region_query.h"
 #include "ramcdb/error.h"
 
@@ -26,6 +28,7 @@ class SurfaceBuilder {
     add_isolated_vertices();
     name_vertices();
     add_before();
+    find_changed_border();
     fix_wires();
     fix_corners();
     add_surroundings(threads);
@@ -117,6 +120,32 @@ class SurfaceBuilder {
       if (local_of[v] != kNew) before_of_key_.emplace(region_.keys[v].packed(), local_of[v]);
   }
 
+  /// Where other charts have to be looked at to count what is not manifold.
+  void find_changed_border() {
+    std::unordered_map<std::uint64_t, std::uint32_t> number;
+    std::vector<std::uint32_t> before(out_.before.positions.size(), kNew), after(out_.mesh.positions.size(), kNew);
+    const auto add = [&](const auto& of_key, std::vector<std::uint32_t>& shared) {
+      for (const auto& [key, v] : of_key)
+        if (VertexKey::unpack(key).where != VertexKey::Where::chart)
+          shared[v] = number.emplace(key, static_cast<std::uint32_t>(number.size())).first->second;
+    };
+    add(before_of_key_, before);
+    add(out_.vertex_of_key, after);
+    const bool has_polygons = !out_.before.polygon_of_face.empty() || !out_.mesh.polygon_of_face.empty();
+    const std::vector<bool> changed = has_polygons
+                                          ? std::vector<bool>(number.size(), true)
+                                          : changed_links({out_.before.faces, before}, {out_.mesh.faces, after},
+                                                          static_cast<std::uint32_t>(number.size()));
+    for (const auto& [key, i] : number)
+      if (changed[i]) changed_border_.insert(key);
+  }
+
+  [[nodiscard]] bool changed_inside(const PageWire& wire) const {
+    for (std::uint32_t i = 0; i < wire.inner_points; ++i)
+      if (changed_border_.contains(VertexKey{VertexKey::Where::wire, wire.id.value, i}.packed())) return true;
+    return false;
+  }
+
   void fix_wires() {
     std::vector<WireId> ids;
     for (const auto& [id, wire] : out_.wires)
@@ -127,7 +156,7 @@ class SurfaceBuilder {
       if (fixed.vertices.empty())
         throw Error(Errc::conflict, fmt::format("vertices of wire {} are gone, which other charts pass", id.value));
       const PageWire& entry = out_.wires.at(id).entry;
-      outside_.insert(entry.charts.begin(), entry.charts.end());
+      if (changed_inside(entry)) outside_.insert(entry.charts.begin(), entry.charts.end());
       out_.fixed_ids.push_back(id);
       out_.fixed.push_back(std::move(fixed));
     }
@@ -142,8 +171,9 @@ class SurfaceBuilder {
     for (const auto& [corner, around] : charts_at_corners(at_, corners)) {
       if (std::ranges::all_of(around, [&](ChartId c) { return out_.holds(c); })) continue;
       out_.shared_corners.insert(corner);
-      outside_.insert(around.begin(), around.end());
-      const auto at = out_.vertex_of_key.find(VertexKey{VertexKey::Where::corner, corner.value, 0}.packed());
+      const std::uint64_t key = VertexKey{VertexKey::Where::corner, corner.value, 0}.packed();
+      if (changed_border_.contains(key)) outside_.insert(around.begin(), around.end());
+      const auto at = out_.vertex_of_key.find(key);
       if (at != out_.vertex_of_key.end()) out_.corners.push_back(at->second);
     }
     std::ranges::sort(out_.corners);
@@ -190,7 +220,8 @@ class SurfaceBuilder {
   const EditedRegion& edited_;
   std::vector<std::uint32_t> local_of_;
   std::unordered_map<std::uint64_t, std::uint32_t> before_of_key_;
-  std::set<ChartId> outside_;
+  std::unordered_set<std::uint64_t> changed_border_;  ///< keys
+  std::set<ChartId> outside_;                         ///< to look at
   RecutSurface out_;
 };
 

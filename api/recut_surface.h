@@ -28,7 +28,7 @@ struct RecutSurface {
   std::set<CornerId> shared_corners;            ///< that other charts have
 
   chartify::IndexedMesh before;  ///< what they were
-  /// `mesh` and `before` with the faces of other charts at their vertices.
+  /// `mesh` and `before` with the faces of other charts at their vertices, wherever these make a difference.
   chartify::IndexedMesh around, around_before;
 
   /// The path of a wire over vertices of `mesh`; empty when one of them is gone.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <map>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -15,24 +16,31 @@ bool is_degenerate(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t
 
 /// One face's pass of an edge.
 struct Pass {
-  std::uint32_t low, high;  ///< the edge's vertices
-  std::uint32_t corner;     ///< 3 * face + position of the pass's first vertex
-  bool forward;             ///< from low to high
+  std::uint64_t edge;    ///< its vertices, the lower one first
+  std::uint32_t corner;  ///< 3 * face + position of the pass's first vertex
+  bool forward;          ///< from the lower vertex
+  [[nodiscard]] std::uint32_t low() const { return static_cast<std::uint32_t>(edge >> 32); }
+  [[nodiscard]] std::uint32_t high() const { return static_cast<std::uint32_t>(edge); }
 };
 
-std::vector<Pass> sorted_passes(const std::vector<Triangle>& faces) {
-  std::vector<Pass> passes;
-  passes.reserve(faces.size() * 3);
-  for (std::uint32_t f = 0; f < faces.size(); ++f) {
-    if (is_degenerate(faces[f])) continue;
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      const std::uint32_t a = faces[f][i], b = faces[f][(i + 1) % 3];
-      passes.push_back({std::min(a, b), std::max(a, b), 3 * f + i, a < b});
+/// By edge, then by corner: counted out to the lower vertices, where few are left to be sorted.
+std::vector<Pass> sorted_passes(const std::vector<Triangle>& faces, std::size_t vertices) {
+  std::vector<std::uint32_t> ends(vertices + 1, 0);
+  const auto for_each_pass = [&](auto&& visit) {
+    for (std::uint32_t f = 0; f < faces.size(); ++f) {
+      if (is_degenerate(faces[f])) continue;
+      for (std::uint32_t i = 0; i < 3; ++i) visit(faces[f][i], faces[f][(i + 1) % 3], 3 * f + i);
     }
-  }
-  std::sort(passes.begin(), passes.end(), [](const Pass& a, const Pass& b) {
-    return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
+  };
+  for_each_pass([&](std::uint32_t a, std::uint32_t b, std::uint32_t) { ++ends[std::min(a, b) + 1]; });
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<Pass> passes(ends.back());
+  for_each_pass([&](std::uint32_t a, std::uint32_t b, std::uint32_t corner) {
+    passes[ends[std::min(a, b)]++] = {(std::uint64_t{std::min(a, b)} << 32) | std::max(a, b), corner, a < b};
   });
+  for (std::size_t v = 0, first = 0; v < vertices; first = ends[v++])
+    std::sort(passes.begin() + static_cast<std::ptrdiff_t>(first), passes.begin() + ends[v],
+              [](const Pass& a, const Pass& b) { return a.edge != b.edge ? a.edge < b.edge : a.corner < b.corner; });
   return passes;
 }
 
@@ -40,9 +48,7 @@ std::vector<Pass> sorted_passes(const std::vector<Triangle>& faces) {
 template <class Visit>
 void for_each_edge(const std::vector<Pass>& passes, Visit&& edge) {
   for (std::size_t begin = 0, end; begin < passes.size(); begin = end) {
-    for (end = begin;
-         end < passes.size() && passes[end].low == passes[begin].low && passes[end].high == passes[begin].high;)
-      ++end;
+    for (end = begin; end < passes.size() && passes[end].edge == passes[begin].edge;) ++end;
     edge(std::span(passes).subspan(begin, end - begin));
   }
 }
@@ -74,7 +80,7 @@ std::uint64_t count_nonmanifold_vertices(const chartify::IndexedMesh& mesh, cons
   };
   for_each_edge(passes, [&](std::span<const Pass> edge) {
     const bool is_bad = edge.size() > 2 && Passes(mesh, edge).all() > 2;
-    for (const std::uint32_t v : {edge[0].low, edge[0].high}) {
+    for (const std::uint32_t v : {edge[0].low(), edge[0].high()}) {
       for (const Pass& pass : edge) corners.join(corner_at(edge[0].corner, v), corner_at(pass.corner, v));
       on_bad_edge[v] = on_bad_edge[v] || is_bad;
     }
@@ -128,7 +134,7 @@ Topology analyze(const chartify::IndexedMesh& mesh) {
     t.degenerate_faces += is_degenerate(face);
   }
   t.isolated_vertices = static_cast<std::uint64_t>(std::count(used.begin(), used.end(), false));
-  const std::vector<Pass> passes = sorted_passes(mesh.faces);
+  const std::vector<Pass> passes = sorted_passes(mesh.faces, mesh.positions.size());
   for_each_edge(passes, [&](std::span<const Pass> edge) {
     const Passes by_faces(mesh, edge);
     t.nonmanifold_edges += by_faces.all() > 2;

@@ -13,26 +13,10 @@
 
 #include "api/chart_loader.h"
 #include "ramcdb/built_in_edits.h"
+#include "tools/benchmark/scratch_folder.h"
 
 namespace ramcdb::benchmark {
 namespace {
-
-/// A folder that is gone with the object.
-class Scratch {
- public:
-  Scratch() : path_(std::filesystem::temp_directory_path() / fmt::format("ramcdb-edits-{}", db::new_attempt_id())) {}
-  ~Scratch() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// The part of a mesh that is edited: a tenth of its largest extent around its outermost vertex along that.
 struct Part {
@@ -72,7 +56,7 @@ void print_row(const Repository& repository, const std::string& what, const std:
 
 template <class Edit>
 void measure(const std::filesystem::path& file, unsigned bits, const std::string& what, const Edit& edit) {
-  const Scratch scratch;
+  const ScratchFolder scratch;
   Repository::create(scratch.path());
   Repository repository = Repository::open(scratch.path());
   ImportOptions options;

@@ -22,6 +22,7 @@
 #include "tools/benchmark/cut_bench.h"
 #include "tools/benchmark/lossless_bench.h"
 #include "tools/benchmark/plot.h"
+#include "tools/benchmark/scratch_folder.h"
 #include "tools/benchmark/store_bench.h"
 #include "tools/benchmark/timing.h"
 
@@ -30,24 +31,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace ramcdb::benchmark;
 using nlohmann::json;
-
-/// A folder of this run's own, removed at the end.
-class Scratch {
- public:
-  Scratch() : folder_(fs::temp_directory_path() / fmt::format("ramcdb-bench-{}", ::getpid())) { clear(); }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  ~Scratch() { fs::remove_all(folder_); }
-
-  const fs::path& clear() const {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-    return folder_;
-  }
-
- private:
-  fs::path folder_;
-};
 
 constexpr const char* kCoderHead =
     "| coder | bits/vertex | to cl10 | connectivity | geometry | wires | index | encode | decode | all cores |\n"
@@ -190,7 +173,7 @@ int main(int argc, char** argv) try {
   app.add_option("--store", store, "Meshes to keep, check out and commit to")->check(CLI::ExistingFile);
   CLI11_PARSE(app, argc, argv);
 
-  const Scratch scratch;
+  const ScratchFolder scratch;
   json all = {{"bits", options.bits},      {"rounds", options.rounds}, {"coder", json::array()},
               {"lossless", json::array()}, {"cut", json::array()},     {"store", json::array()}};
   std::vector<CoderFigures> figures;

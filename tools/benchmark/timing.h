@@ -1,8 +1,14 @@
 #pragma once
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace ramcdb::benchmark {
@@ -13,6 +19,45 @@ inline double seconds(const std::function<void()>& work) {
   work();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
+
+/// CPU time that this process, or its children that ended, have used: user and system, seconds.
+inline double cpu_seconds(int who = RUSAGE_SELF) {
+  rusage used{};
+  getrusage(who, &used);
+  const auto of = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return of(used.ru_utime) + of(used.ru_stime);
+}
+
+/// CPU time of this process by the stage that an operation says it is at, as it tells its progress.
+class StageClock {
+ public:
+  /// What is used until the first stage is counted as this one's.
+  explicit StageClock(std::string first) : stage_(std::move(first)) {}
+
+  /// Valid as long as this is.
+  [[nodiscard]] std::function<void(std::string_view, double)> callback() {
+    return [this](std::string_view stage, double) {
+      if (stage != stage_) begin(std::string(stage));
+    };
+  }
+  void begin(std::string stage) {
+    const double now = cpu_seconds();
+    seconds_[stage_] += now - since_;
+    since_ = now;
+    stage_ = std::move(stage);
+  }
+  [[nodiscard]] double seconds(const std::string& stage) const {
+    const auto it = seconds_.find(stage);
+    return it == seconds_.end() ? 0 : it->second;
+  }
+
+ private:
+  std::string stage_;
+  double since_ = cpu_seconds();
+  std::map<std::string, double> seconds_;
+};
 
 /// REQUIRES: not empty.
 inline double median(std::vector<double> values) {
