@@ -7,6 +7,7 @@
 
 #include "api/chart_difference.h"
 #include "api/edited_region_builder.h"
+#include "api/limited_edit.h"
 #include "api/region_match.h"
 #include "api/region_mesh.h"
 #include "api/version_figures.h"
@@ -162,7 +163,8 @@ EditedRegion mesh_as_edit(const Snapshot::Impl& at, const RegionMesh& region, co
   return MeshAsEdit(at, region, mesh).run();
 }
 
-PendingEdit edit_between(const Snapshot::Impl& from, const Snapshot::Impl& to, unsigned threads) {
+PendingEdit edit_between(const Snapshot::Impl& from, const Snapshot::Impl& to, unsigned threads,
+                         const std::optional<Region>& within) {
   if (from.root().mesh != to.root().mesh || !(from.record().lattice == to.record().lattice))
     throw Error(Errc::invalid_argument, "these versions do not hold the same mesh",
                 fmt::format("{} and {}", from.root().name, to.root().name), "name one mesh with --mesh");
@@ -182,15 +184,16 @@ PendingEdit edit_between(const Snapshot::Impl& from, const Snapshot::Impl& to, u
   edit.region = load_region(edit.parts, threads, nullptr, true);
   const RegionMesh mesh = load_region(std::span(&part, 1), threads, nullptr, true);
   edit.edited = mesh_as_edit(from, edit.region, mesh);
+  if (within) edit.edited = limited(from, edit.region, edit.edited, mesh, limits_of(*within, from, to));
   edit.changes = changes_of(from, edit.region, edit.edited);
   return edit;
 }
 
 CommitReport carry_over(const Snapshot::Impl& base, const Snapshot::Impl& theirs, const CommitOptions& options,
-                        std::string_view operation, VersionId second_parent) {
+                        std::string_view operation, VersionId second_parent, const std::optional<Region>& within) {
   CommitOptions merging = options;
   merging.merge = true;
-  PendingEdit edit = edit_between(base, theirs, options.threads);
+  PendingEdit edit = edit_between(base, theirs, options.threads, within);
   edit.operation = operation;
   return commit_edit(edit, merging, db::new_attempt_id(), second_parent);
 }
@@ -232,7 +235,7 @@ MergeReport merge_version(const std::shared_ptr<db::Store>& store, VersionId the
 }
 
 CommitReport revert_version(const std::shared_ptr<db::Store>& store, VersionId version, std::string_view mesh,
-                            const CommitOptions& options) {
+                            const std::optional<Region>& within, const CommitOptions& options) {
   const db::VersionInfo info = store->version(version);
   if (info.parents.empty())
     throw Error(Errc::invalid_argument, fmt::format("version {} has no version before it", version.value), {},
@@ -251,7 +254,7 @@ CommitReport revert_version(const std::shared_ptr<db::Store>& store, VersionId v
   if (reverting.message.empty()) reverting.message = fmt::format("revert v{}: {}", version.value, info.message);
   const Snapshot::Impl from(store, version, changed.front());
   const Snapshot::Impl to(store, info.parents.front(), *root_with_id(before, changed.front().mesh));
-  return carry_over(from, to, reverting, "revert", {});
+  return carry_over(from, to, reverting, "revert", {}, within);
 }
 
 }  // namespace ramcdb::detail

@@ -230,7 +230,13 @@ class Repository {
 
   /// Takes back what a version did to a mesh (may be empty where it changed one), on top of what came later, as a new
   /// version. Conflicts with later edits of the same vertices come back in the report, with nothing written.
-  CommitReport revert(std::string_view revision, std::string_view mesh, const CommitOptions& options);
+  /// \param within take back only what the version changed in this region. Boxes, balls and frusta without `grow` cut
+  /// through charts: vertices inside, before or after the version, go back to where they were, and so do the values of
+  /// vertices inside and of faces whose bounding box is met. Where the version replaced faces, each island of such
+  /// faces (connected by vertices) that is met goes back whole. All other regions are whole charts, as the version has
+  /// them, or of those that it removed, as they were. Throws not_found as Snapshot::find.
+  CommitReport revert(std::string_view revision, std::string_view mesh, const CommitOptions& options,
+                      const std::optional<Region>& within = {});
 
   struct VerifyOptions {
     bool quick = false;  ///< checksums and references only, no decoding
