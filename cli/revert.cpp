@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "cli/chart_list.h"
 #include "cli/conflict_text.h"
 #include "cli/failure.h"
 #include "cli/json_out.h"
@@ -44,9 +43,8 @@ int run_revert(const RevertCommand& command) {
   else if (!command.mode.quiet && !conflict)
     say(report_text(report, command.revision, within.has_value()));
   if (!conflict) return kDone;
-  complain("later versions changed charts " + chart_list(report.conflicts) +
-           " in the same places, nothing was written:" + conflict_text(report.conflict_places) +
-           "revert these versions first, newest first");
+  complain("later versions changed " + conflicting_charts(report) + " in the same places, nothing was written:" +
+           conflict_text(report.conflict_places) + "revert these versions first, newest first");
   return kConflict;
 }
 
