@@ -184,6 +184,32 @@ std::optional<EncodedEdit> encode_or_merge(const Snapshot::Impl& tip, const Pend
   return merge_on(tip, edit, options, report);
 }
 
+/// Refers to blobs that another version wrote alike instead of writing them again.
+void share_blobs(EncodedEdit& edit, const Snapshot::Impl& at, VersionId other) {
+  const auto reader = at.store().reader();
+  std::erase_if(edit.blobs, [&](const EncodedEdit::Blob& blob) {
+    db::BlobKey key = blob.key;
+    key.version = other;
+    if (reader->find(key) != blob.bytes) return false;
+    if (key.kind == db::Kind::wire) {
+      for (auto& [id, wire] : edit.pages.wires)
+        if (wire.group.value == key.id && !wire.version) wire.version = other;
+      return true;
+    }
+    PageChart& chart = edit.pages.charts.at(ChartId(key.id));
+    if (key.kind == db::Kind::chart)
+      chart.version = other;
+    else
+      std::ranges::find(chart.layers, key.layer, &LayerRef::layer)->version = other;
+    return true;
+  });
+}
+
+bool has_new_ids(const MeshRecord& before, const MeshRecord& after) {
+  return before.next_chart != after.next_chart || before.next_wire != after.next_wire ||
+         before.next_corner != after.next_corner;
+}
+
 template <class Item>
 void append(const std::vector<Item>& items, std::vector<Item>& to) {
   to.insert(to.end(), items.begin(), items.end());
@@ -277,6 +303,16 @@ std::optional<VersionDraft> draft_of(std::span<const PendingEdit> edits, Version
   if (refused) return std::nullopt;
   draft.roots = edits.front().base().store().roots(tip);
   return draft;
+}
+
+std::optional<VersionId> publish_unmerged(const PendingEdit& edit, VersionId merged, const CommitOptions& options) {
+  const Snapshot::Impl& base = edit.base();
+  if (!common(charts_other_than(edit.parts, base.pages(), {}), edit.changes.touched).empty()) return std::nullopt;
+  EncodedEdit encoded = encode_on(base, edit, options.threads);
+  if (encoded.pages.empty() || !encoded.pages.removed.empty() || has_new_ids(base.record(), encoded.record))
+    return std::nullopt;
+  share_blobs(encoded, base, merged);
+  return publish_nameless(base, std::move(encoded), options);
 }
 
 void publish_on_tip(const Snapshot::Impl& base, const CommitOptions& options, std::string_view operation,

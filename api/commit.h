@@ -61,6 +61,13 @@ void compare_with_tip(ChangeReport& report, std::span<const RegionPart> parts, s
 [[nodiscard]] CommitReport commit_edit(const PendingEdit& edit, const CommitOptions& options,
                                        const std::string& attempt);
 
+/// After an edit was merged: publishes it unmerged, on its own base, as a version without a name (publish_nameless), so
+/// that who goes on with the edit has a base to be compared with. What `merged` holds alike is shared with it, so
+/// charts that nobody else changed count as unchanged there. None where that cannot be: where the edit's charts are of
+/// several versions that do not fit together, or it makes new charts, whose ids others may have given to theirs.
+[[nodiscard]] std::optional<VersionId> publish_unmerged(const PendingEdit& edit, VersionId merged,
+                                                        const CommitOptions& options);
+
 /// A version of one mesh that is made from the tip of a branch.
 /// \param base a version that holds the mesh
 /// \param operation what the version's figures call it

@@ -116,4 +116,21 @@ void publish_on_tip(const std::shared_ptr<db::Store>& store, VersionId base, con
   TipPublisher(store, base, options, operation, attempt, make, report).run();
 }
 
+VersionId publish_nameless(const Snapshot::Impl& at, EncodedEdit edit, const CommitOptions& options) {
+  const auto writer = at.store().writer();
+  db::CommitInfo info;
+  info.branch.clear();
+  info.parents = {at.version()};
+  info.author = options.author;
+  info.message = options.message;
+  info.attempt = db::new_attempt_id();
+  info.changed = {{at.root().mesh, edit.changed}};
+  info.roots = at.store().roots(at.version());
+  *std::ranges::find(info.roots, at.root().mesh, &db::MeshRoot::mesh) = put_edit(at, edit, *writer);
+  CommitReport report;
+  report.bytes_written = writer->bytes_put();
+  info.figures = figures_of(report, "commit", info.changed);
+  return writer->publish(info);
+}
+
 }  // namespace ramcdb::detail

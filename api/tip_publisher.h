@@ -39,4 +39,8 @@ void publish_on_tip(const std::shared_ptr<db::Store>& store, VersionId base, con
                     std::string_view operation, const std::string& attempt, const MakeDraft& make,
                     CommitReport& report);
 
+/// Publishes an edit of one mesh as a version after the one that it is coded on, and on no branch: it can be had by its
+/// number only.
+[[nodiscard]] VersionId publish_nameless(const Snapshot::Impl& at, EncodedEdit edit, const CommitOptions& options);
+
 }  // namespace ramcdb::detail

@@ -54,5 +54,25 @@ TEST_F(Merge, NamesTheConflictsOfAllMeshes) {
   EXPECT_EQ(places.back()["mesh"], "wavy");
 }
 
+using MergedFile = SceneTest;
+
+TEST_F(MergedFile, GoesOnBeingEditedAndCommitted) {
+  const std::string mine = checked_out("mine.ply"), theirs = checked_out("theirs.ply");
+  edit(mine);
+  write_text(theirs, with_lifted_vertex(read_text(theirs), 0.5, 0.6, 0.03));
+  expect_done(run_ramcdb({"commit", theirs, "-m", "theirs", "-q"}));
+  EXPECT_EQ(run_ramcdb({"commit", mine, "-m", "mine"}).code, 3);
+  EXPECT_EQ(only_object(run_ramcdb({"commit", mine, "-m", "mine", "--merge", "--json"}).out)["merged"], true);
+  EXPECT_EQ(only_object(run_ramcdb({"status", mine, "--json"}).out)["clean"], true);
+  edit(mine, 0.02);
+  const auto more = only_object(run_ramcdb({"commit", mine, "-m", "more", "--merge", "--json"}).out);
+  EXPECT_EQ(more["vertices_moved"], 1);
+  EXPECT_EQ(more["conflicts"].size(), 0U);
+  const auto all = only_object(run_ramcdb({"diff", repo_, "1", "HEAD", "--json"}).out);
+  EXPECT_EQ(all["vertices_moved"], 2) << "theirs, and mine lifted twice";
+  EXPECT_NEAR(all["max_displacement"].get<double>(), 0.07, 1e-4);
+  expect_done(run_ramcdb({"verify", repo_, "-q"}));
+}
+
 }  // namespace
 }  // namespace ramcdb::test
