@@ -99,7 +99,7 @@ EditedFile read_edited_file(const std::shared_ptr<db::Store>& store, const std::
   return edited;
 }
 
-/// A merged file does not hold what others did: it stays an edit of what it was checked out from.
+/// The file stays an edit of what it was checked out from.
 void keep_sidecar(EditedFile& edited, const std::filesystem::path& file) {
   edited.sidecar.file_hash = hash_file(file);
   edited.sidecar.nonce = db::new_attempt_id();
@@ -108,8 +108,9 @@ void keep_sidecar(EditedFile& edited, const std::filesystem::path& file) {
 
 /// After a commit the file holds the new version's charts, except those that others changed meanwhile: these it still
 /// holds as they were.
-void move_sidecar_on(EditedFile& edited, const std::filesystem::path& file, const CommitReport& report) {
-  const VersionId published = report.revision;
+/// \param published the version that has what the file holds
+void move_sidecar_on(EditedFile& edited, const std::filesystem::path& file, VersionId published,
+                     const CommitReport& report) {
   const std::vector<ChartId> others = changed_by_others(edited.edit.parts, published);
   std::map<VersionId, std::vector<ChartId>> charts_at;
   for (const Sidecar::Part& part : edited.sidecar.parts)
@@ -188,10 +189,12 @@ CommitReport commit_file(const std::shared_ptr<db::Store>& store, const std::fil
       commit_edit(edited.edit, options, attempt_name(edited.sidecar.nonce, options.branch, edited.edit));
   if (report.conflicts.empty() && !report.nothing_changed) {
     release_lock(*store, std::exchange(edited.sidecar.lock, 0));
-    if (report.merged)
-      keep_sidecar(edited, file);
+    if (!report.merged)
+      move_sidecar_on(edited, file, report.revision, report);
+    else if (const auto unmerged = publish_unmerged(edited.edit, report.revision, options))
+      move_sidecar_on(edited, file, *unmerged, {});  // the file does not hold what others did
     else
-      move_sidecar_on(edited, file, report);
+      keep_sidecar(edited, file);
   }
   report.seconds = seconds_since(start);
   return report;

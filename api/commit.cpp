@@ -11,12 +11,7 @@
 #include <set>
 
 #include "api/chart_difference.h"
-#include "api/locks.h"
-#include "api/page_rewriter.h"
-#include "api/progress.h"
-#include "api/store_format.h"
 #include "api/three_way.h"
-#include "api/version_figures.h"
 #include "ramcdb/error.h"
 
 namespace ramcdb::detail {
@@ -74,20 +69,10 @@ std::vector<ChartId> common(const std::vector<ChartId>& charts, const std::set<C
   return both;
 }
 
-std::string figures_of(const CommitReport& report, std::string_view operation, std::size_t charts) {
-  VersionFigures figures;
-  figures.operation = operation;
-  figures.charts_touched = charts;
-  figures.vertices_moved = report.vertices_moved;
-  figures.vertices_added = report.vertices_added;
-  figures.vertices_removed = report.vertices_removed;
-  figures.max_displacement = report.max_displacement;
-  figures.bytes_written = report.bytes_written;
-  return encode_figures(figures);
-}
-
-void count_changes(const PendingEdit& edit, CommitReport& report) {
+CommitReport counted(const PendingEdit& edit) {
   const ChangeReport change = describe_edit(edit);
+  CommitReport report;
+  report.mesh = edit.base().root().name;
   report.notes = edit.notes;
   report.charts_touched = change.charts_touched.size();
   report.vertices_moved = change.vertices_moved;
@@ -97,6 +82,7 @@ void count_changes(const PendingEdit& edit, CommitReport& report) {
   report.faces_removed = change.faces_removed;
   report.values_changed = change.values_changed;
   report.max_displacement = change.max_displacement;
+  return report;
 }
 
 void count_coded(const EncodedEdit& edit, CommitReport& report) {
@@ -125,93 +111,6 @@ void repeat_report(const PendingEdit& edit, VersionId published, CommitReport& r
   report.charts_added = report.added.size();
   report.charts_removed = report.removed.size();
 }
-
-/// Puts all that a version writes, and says where the mesh then stands.
-db::MeshRoot put_edit(const Snapshot::Impl& tip, EncodedEdit& edit, db::Writer& writer) {
-  MeshRecord& record = edit.record;
-  if (record.table && !record.table_version) record.table_version = writer.version();
-  if (edit.new_layer_table) record.layers = writer.version();
-  for (EncodedEdit::Blob& blob : edit.blobs) writer.put(blob.key, std::move(blob.bytes));
-  const db::MeshRoot root = rewrite_pages(tip.pages(), edit.pages, writer, record);
-  writer.put({db::Kind::mesh_record, root.mesh, 1, {}, 0}, encode_record(record));
-  return root;
-}
-
-/// One version of one mesh on the tip of a branch.
-class TipPublisher {
- public:
-  TipPublisher(const Snapshot::Impl& base, const CommitOptions& options, std::string_view operation,
-               const std::string& attempt,
-               const std::function<std::optional<EncodedEdit>(const Snapshot::Impl&)>& encode, CommitReport& report)
-      : base_(base),
-        store_(base.store_handle()),
-        mesh_(base.root().mesh),
-        options_(options),
-        branch_(options.onto.empty() ? options.branch : options.onto),
-        operation_(operation),
-        attempt_(attempt),
-        encode_(encode),
-        report_(report) {}
-
-  void run() {
-    constexpr int kTriesWithoutLock = 2;
-    for (int tries = 0;; ++tries) {
-      const auto lock = tries < kTriesWithoutLock ? nullptr : store_->writer();
-      const VersionId tip = lock ? lock->tip(branch_) : store_->tip(branch_);
-      const Snapshot::Impl at = snapshot_of(tip || options_.onto.empty() ? tip : base_.version());
-      begin_stage(options_.progress, "encode");
-      std::optional<EncodedEdit> edit = encode_(at);
-      if (!edit) return;
-      count_coded(*edit, report_);
-      begin_stage(options_.progress, "store");
-      if (publish(tip, at, *edit, lock ? *lock : *store_->writer())) return;
-    }
-  }
-
- private:
-  [[nodiscard]] Snapshot::Impl snapshot_of(VersionId version) const {
-    const auto roots = store_->roots(version);
-    if (const db::MeshRoot* root = root_of(roots, mesh_)) return {store_, version, *root};
-    throw Error(Errc::conflict, fmt::format("mesh {} is not on branch {}", base_.root().name, branch_),
-                version ? fmt::format("version {}", version.value) : "there is no such branch",
-                "commit to the branch that you checked out from, or with --onto to a new one");
-  }
-
-  /// False when the tip moved.
-  /// \param expected the branch's tip; 0 for a branch that begins with this version
-  bool publish(VersionId expected, const Snapshot::Impl& tip, EncodedEdit& edit, db::Writer& writer) const {
-    if (writer.tip(branch_) != expected) return false;
-    if (!options_.ignore_locks) refuse_locked(*store_, mesh_, edit.changed, options_.author);
-    db::CommitInfo info;
-    info.roots = store_->roots(tip.version());
-    const db::MeshRoot moved = put_edit(tip, edit, writer);
-    for (db::MeshRoot& root : info.roots)
-      if (root.mesh == moved.mesh) root = moved;
-    info.branch = branch_;
-    info.expected_tip = expected;
-    info.parents = {tip.version()};
-    if (edit.merged_version) info.parents.push_back(edit.merged_version);
-    info.author = options_.author;
-    info.message = options_.message;
-    info.attempt = attempt_;
-    info.changed = {{mesh_, edit.changed}};
-    report_.parent = tip.version();
-    report_.bytes_written = writer.bytes_put();
-    info.figures = figures_of(report_, operation_, edit.changed.size());
-    report_.revision = writer.publish(info);
-    return true;
-  }
-
-  const Snapshot::Impl& base_;
-  const std::shared_ptr<db::Store>& store_;
-  MeshId mesh_;
-  const CommitOptions& options_;
-  const std::string& branch_;
-  std::string_view operation_;
-  const std::string& attempt_;
-  const std::function<std::optional<EncodedEdit>(const Snapshot::Impl&)>& encode_;
-  CommitReport& report_;
-};
 
 /// The charts that an edit touches, as a tip has them, and the edit of these: all that it holds, as a rule, of the very
 /// tip.
@@ -269,12 +168,71 @@ std::optional<EncodedEdit> merge_on(const Snapshot::Impl& tip, const PendingEdit
   const bool other_kinds = !(geometry && merged.theirs_moved) && !layers_overlap(edit, tip, report.conflicts);
   if (!merged.conflicts.empty() || !(options.merge || other_kinds)) {
     report.conflict_places = std::move(merged.conflicts);
+    for (MergeConflict& conflict : report.conflict_places) conflict.mesh = report.mesh;
     return std::nullopt;
   }
   report.conflicts.clear();
   report.merged = true;
   const auto may_recut = [&](ChartId) { return true; };
   return encode_edit(tip, std::move(theirs), std::move(merged.edited), may_recut, options.threads);
+}
+
+/// An edit on a tip, merged where others changed the same charts. None, with the conflicts in the report, where that
+/// cannot be or was not asked for.
+std::optional<EncodedEdit> encode_or_merge(const Snapshot::Impl& tip, const PendingEdit& edit,
+                                           const CommitOptions& options, CommitReport& report) {
+  report.conflict_places.clear();
+  report.merged = false;
+  report.conflicts = common(charts_other_than(edit.parts, tip.pages(), {}), edit.changes.touched);
+  if (report.conflicts.empty()) return encode_on(tip, edit, options.threads);
+  return merge_on(tip, edit, options, report);
+}
+
+/// Refers to blobs that another version wrote alike instead of writing them again.
+void share_blobs(EncodedEdit& edit, const Snapshot::Impl& at, VersionId other) {
+  const auto reader = at.store().reader();
+  std::erase_if(edit.blobs, [&](const EncodedEdit::Blob& blob) {
+    db::BlobKey key = blob.key;
+    key.version = other;
+    if (reader->find(key) != blob.bytes) return false;
+    if (key.kind == db::Kind::wire) {
+      for (auto& [id, wire] : edit.pages.wires)
+        if (wire.group.value == key.id && !wire.version) wire.version = other;
+      return true;
+    }
+    PageChart& chart = edit.pages.charts.at(ChartId(key.id));
+    if (key.kind == db::Kind::chart)
+      chart.version = other;
+    else
+      std::ranges::find(chart.layers, key.layer, &LayerRef::layer)->version = other;
+    return true;
+  });
+}
+
+bool has_new_ids(const MeshRecord& before, const MeshRecord& after) {
+  return before.next_chart != after.next_chart || before.next_wire != after.next_wire ||
+         before.next_corner != after.next_corner;
+}
+
+template <class Item>
+void append(const std::vector<Item>& items, std::vector<Item>& to) {
+  to.insert(to.end(), items.begin(), items.end());
+}
+
+/// Adds the report of one mesh to that of several.
+void add(const CommitReport& report, CommitReport& sum) {
+  sum.merged = sum.merged || report.merged;
+  for (const auto count : {&CommitReport::charts_touched, &CommitReport::charts_reencoded, &CommitReport::charts_added,
+                           &CommitReport::charts_removed, &CommitReport::wires_reencoded,
+                           &CommitReport::ranges_expanded, &CommitReport::vertices_moved, &CommitReport::vertices_added,
+                           &CommitReport::vertices_removed, &CommitReport::faces_added, &CommitReport::faces_removed,
+                           &CommitReport::values_changed, &CommitReport::layers_reencoded})
+    sum.*count += report.*count;
+  sum.max_displacement = std::max(sum.max_displacement, report.max_displacement);
+  append(report.conflict_places, sum.conflict_places);
+  append(report.conflicts, sum.conflicts);
+  append(report.added, sum.added);
+  append(report.removed, sum.removed);
 }
 
 }  // namespace
@@ -316,41 +274,96 @@ std::string attempt_name(std::string_view nonce, std::string_view branch, const 
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
+std::vector<CommitReport> reports_of(std::span<const PendingEdit> edits) {
+  std::vector<CommitReport> reports;
+  for (const PendingEdit& edit : edits) reports.push_back(counted(edit));
+  return reports;
+}
+
+CommitReport added_up(const std::vector<CommitReport>& reports) {
+  if (reports.size() == 1) return reports.front();
+  CommitReport sum;
+  for (const CommitReport& report : reports) add(report, sum);
+  sum.per_mesh = reports;
+  return sum;
+}
+
+std::optional<VersionDraft> draft_of(std::span<const PendingEdit> edits, VersionId tip, const CommitOptions& options,
+                                     std::vector<CommitReport>& reports) {
+  VersionDraft draft;
+  bool refused = false;
+  for (std::size_t i = 0; i < edits.size(); ++i) {
+    const auto at = mesh_on_branch(edits[i].base(), tip, options.onto.empty() ? options.branch : options.onto);
+    reports[i].revision = reports[i].parent = tip;
+    reports[i].nothing_changed = edits[i].changes.empty();
+    if (reports[i].nothing_changed) continue;
+    auto encoded = encode_or_merge(*at, edits[i], options, reports[i]);
+    reports[i].nothing_changed = encoded && encoded->pages.empty();
+    refused = refused || !encoded;
+    if (!encoded) continue;
+    count_coded(*encoded, reports[i]);
+    if (!reports[i].nothing_changed) draft.edits.push_back({at, *std::move(encoded)});
+  }
+  if (refused) return std::nullopt;
+  draft.roots = edits.front().base().store().roots(tip);
+  return draft;
+}
+
+std::optional<VersionId> publish_unmerged(const PendingEdit& edit, VersionId merged, const CommitOptions& options) {
+  const Snapshot::Impl& base = edit.base();
+  if (!common(charts_other_than(edit.parts, base.pages(), {}), edit.changes.touched).empty()) return std::nullopt;
+  EncodedEdit encoded = encode_on(base, edit, options.threads);
+  if (encoded.pages.empty() || !encoded.pages.removed.empty() || has_new_ids(base.record(), encoded.record))
+    return std::nullopt;
+  share_blobs(encoded, base, merged);
+  return publish_nameless(base, std::move(encoded), options);
+}
+
 void publish_on_tip(const Snapshot::Impl& base, const CommitOptions& options, std::string_view operation,
                     const std::string& attempt,
                     const std::function<std::optional<EncodedEdit>(const Snapshot::Impl& tip)>& encode,
                     CommitReport& report) {
-  TipPublisher(base, options, operation, attempt, encode, report).run();
+  const auto make = [&](VersionId tip) -> std::optional<VersionDraft> {
+    const auto at = mesh_on_branch(base, tip, options.branch);
+    auto encoded = encode(*at);
+    if (!encoded) return std::nullopt;
+    count_coded(*encoded, report);
+    VersionDraft draft;
+    draft.edits.push_back({at, *std::move(encoded)});
+    draft.roots = base.store().roots(tip);
+    return draft;
+  };
+  publish_on_tip(base.store_handle(), base.version(), options, operation, attempt, make, report);
 }
 
-CommitReport commit_edit(const PendingEdit& edit, const CommitOptions& options, const std::string& attempt,
-                         VersionId second_parent) {
+CommitReport commit_edits(std::span<const PendingEdit> edits, const CommitOptions& options,
+                          const std::string& attempt) {
   const auto start = std::chrono::steady_clock::now();
-  const Snapshot::Impl& base = edit.base();
-  CommitReport report;
-  count_changes(edit, report);
-  if (edit.changes.empty()) {
+  std::vector<CommitReport> reports = reports_of(edits);
+  CommitReport report = added_up(reports);
+  const Snapshot::Impl& base = edits.front().base();
+  const auto make = [&](VersionId tip) -> std::optional<VersionDraft> {
+    auto draft = draft_of(edits, tip, options, reports);
+    report = added_up(reports);
+    if (!draft) return draft;
+    report.nothing_changed = draft->edits.empty();
+    report.revision = report.parent = tip;
+    return report.nothing_changed ? std::nullopt : std::move(draft);
+  };
+  if (std::ranges::all_of(edits, [](const PendingEdit& edit) { return edit.changes.empty(); })) {
     report.nothing_changed = true;
     report.revision = report.parent = base.version();
   } else if (const auto published = base.store().published_by(attempt)) {
-    repeat_report(edit, *published, report);
+    repeat_report(edits.front(), *published, report);
   } else {
-    publish_on_tip(
-        base, options, edit.operation, attempt,
-        [&](const Snapshot::Impl& tip) -> std::optional<EncodedEdit> {
-          report.conflicts = common(charts_other_than(edit.parts, tip.pages(), {}), edit.changes.touched);
-          auto encoded =
-              report.conflicts.empty() ? encode_on(tip, edit, options.threads) : merge_on(tip, edit, options, report);
-          if (!encoded) return encoded;
-          encoded->merged_version = second_parent;
-          report.nothing_changed = encoded->pages.empty() && !second_parent;
-          report.revision = report.parent = tip.version();
-          return report.nothing_changed ? std::nullopt : std::move(encoded);
-        },
-        report);
+    publish_on_tip(base.store_handle(), base.version(), options, edits.front().operation, attempt, make, report);
   }
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
+}
+
+CommitReport commit_edit(const PendingEdit& edit, const CommitOptions& options, const std::string& attempt) {
+  return commit_edits(std::span(&edit, 1), options, attempt);
 }
 
 }  // namespace ramcdb::detail

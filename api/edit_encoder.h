@@ -25,7 +25,6 @@ struct EncodedEdit {
   /// Of the new version, but for its pages' bytes and ids. A table is the new version's where `table_version` is 0.
   MeshRecord record;
   bool new_layer_table = false;
-  VersionId merged_version;  ///< a second parent: what the edit brings over; 0 for none
 
   // For reports.
   std::vector<ChartId> changed;  ///< charts of which something is written, and those that go; ascending

@@ -200,6 +200,8 @@ bool meets_shape(const MeshRecord& record, const LatticeBox& box, const RegionSh
   return !box.empty() && meets_any(model_box(record, box), shape);
 }
 
+bool meets_shape(const Point& lo, const Point& hi, const RegionShape& shape) { return meets_any({lo, hi}, shape); }
+
 std::map<CornerId, std::set<ChartId>> charts_at_corners(const Snapshot::Impl& at, const CornerPlaces& corners,
                                                         ReadCost* cost) {
   std::map<CornerId, std::set<ChartId>> charts;

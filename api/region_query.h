@@ -14,6 +14,8 @@ namespace ramcdb::detail {
 
 /// Whether a chart's box meets a box, ball or frustum; false for the shapes that name charts.
 [[nodiscard]] bool meets_shape(const MeshRecord& record, const LatticeBox& box, const RegionShape& shape);
+/// The same of a box in model units.
+[[nodiscard]] bool meets_shape(const Point& lo, const Point& hi, const RegionShape& shape);
 
 /// Corners with their positions.
 using CornerPlaces = std::map<CornerId, LatticePoint>;

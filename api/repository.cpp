@@ -227,9 +227,10 @@ MergeReport Repository::merge(std::string_view revision, const CommitOptions& op
   return detail::merge_version(store, store->resolve(revision), options);
 }
 
-CommitReport Repository::revert(std::string_view revision, std::string_view mesh, const CommitOptions& options) {
+CommitReport Repository::revert(std::string_view revision, std::string_view mesh, const CommitOptions& options,
+                                const std::optional<Region>& within) {
   const auto store = impl_->store_for_writing();
-  return detail::revert_version(store, store->resolve(revision), mesh, options);
+  return detail::revert_version(store, store->resolve(revision), mesh, within, options);
 }
 
 RepackReport Repository::repack(std::string_view mesh, const RepackOptions& options) {

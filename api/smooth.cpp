@@ -42,11 +42,11 @@ CommitReport Repository::smooth(std::string_view mesh, const Region& region, con
     progress("smooth", static_cast<double>(i) / options.iterations);
     field.step(lambda, options.commit.threads);
   }
-  const detail::StreamedMoves moves{charts, false,
-                                    [&](const VertexKey& key, LatticePoint from, const Point& position) {
-                                      return field.move_of(key, from, position);
-                                    },
-                                    options.memory, folder()};
+  detail::StreamedMoves moves{.region = charts, .mover = {}, .turner = {}, .scratch_folder = folder()};
+  moves.mover = [&](const VertexKey& key, LatticePoint from, const Point& position) {
+    return field.move_of(key, from, position);
+  };
+  moves.memory = options.memory;
   CommitReport report = detail::commit_streamed(base.impl(), moves, options.commit, "smooth");
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;

@@ -16,6 +16,8 @@ namespace {
 
 /// What a face takes while its chart is decoded, moved, coded and compared.
 constexpr std::uint64_t kCodingBytesPerFace = 400;
+/// The same with all its layers.
+constexpr std::uint64_t kCodingBytesPerFaceWithLayers = 800;
 /// Wires whose points are in memory at a time. Groups end there, so it is no matter of memory.
 constexpr std::size_t kWiresAtATime = 1024;
 
@@ -37,12 +39,17 @@ struct ChartWork {
 class Spooler {
  public:
   Spooler(const Snapshot::Impl& at, const StreamedMoves& moves, unsigned threads)
-      : at_(at), moves_(moves), threads_(threads), edit_(moves.scratch_folder) {}
+      : at_(at),
+        moves_(moves),
+        turns_normals_(moves.turner && std::ranges::any_of(at.layers().layers, holds_turnable_normals)),
+        threads_(threads),
+        edit_(moves.scratch_folder) {}
 
   SpooledEdit run(const std::function<void(double)>& progress) {
     const std::vector<ChartId> charts = charts_to_code();
     std::size_t done = 0;
-    for (const auto batch : in_batches(at_, charts, moves_.memory, kCodingBytesPerFace, threads_)) {
+    const std::uint64_t per_face = turns_normals_ ? kCodingBytesPerFaceWithLayers : kCodingBytesPerFace;
+    for (const auto batch : in_batches(at_, charts, moves_.memory, per_face, threads_)) {
       progress(static_cast<double>(done) / static_cast<double>(charts.size()));
       code(batch);
       done += batch.size();
@@ -59,7 +66,7 @@ class Spooler {
 
   void code(std::span<const ChartId> batch) {
     ChartLoader loader(at_);
-    std::vector<LoadedChart> loaded = loader.load(batch, threads_);
+    std::vector<LoadedChart> loaded = loader.load(batch, threads_, nullptr, turns_normals_);
     std::vector<ChartWork> works(loaded.size());
     parallel_for(loaded.size(), threads_, [&](std::size_t i) { works[i] = recode(std::move(loaded[i])); });
     for (ChartWork& work : works) {
@@ -79,7 +86,9 @@ class Spooler {
     }
     ChartWork work;
     work.base = loaded.entry;
-    if (moves.empty()) return work;
+    std::vector<LayerEdit> normals;
+    if (turns_normals_) normals = turned_normals(at_, loaded, moves_.turner);
+    if (moves.empty() && normals.empty()) return work;
     MoveTable table;
     for (const VertexMove& move : moves) {
       table.emplace(move.key.packed(), &move);
@@ -89,7 +98,8 @@ class Spooler {
       else
         work.shared.push_back(move);
     }
-    work.recoded = ChartRecoder(at_, coder_of(at_), table, {}).run(std::move(loaded), true, false);
+    work.recoded =
+        ChartRecoder(at_, coder_of(at_), table, normals).run(std::move(loaded), !moves.empty(), !normals.empty());
     return work;
   }
 
@@ -168,6 +178,7 @@ class Spooler {
 
   const Snapshot::Impl& at_;
   const StreamedMoves& moves_;
+  bool turns_normals_;
   unsigned threads_;
   SpooledEdit edit_;
   std::unordered_set<WireId> seen_wires_;

@@ -11,6 +11,7 @@
 #include "api/edit_encoder.h"
 #include "api/page_index.h"
 #include "api/scratch_file.h"
+#include "api/turned_normals.h"
 
 namespace ramcdb::detail {
 
@@ -23,7 +24,9 @@ struct StreamedMoves {
   std::vector<ChartId> region;  ///< ascending
   bool border_moves = false;    ///< vertices move that charts outside the region share, so that those follow
   Mover mover;
-  std::uint64_t memory = 0;  ///< bytes for charts that are held at a time, more for one chart if it needs more
+  NormalTurner turner;             ///< none: normals stay as they are
+  bool normals_still_fit = false;  ///< though they stay as they are
+  std::uint64_t memory = 0;        ///< bytes for charts that are held at a time, more for one chart if it needs more
   std::filesystem::path scratch_folder;
 };
 

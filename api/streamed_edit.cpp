@@ -116,10 +116,13 @@ db::ChangedCharts changed_charts_of(MeshId mesh, const SpooledEdit& edit) {
   return changed;
 }
 
-std::vector<std::string> normals_of(const LayerTable& table) {
+/// The attributes with normals that an edit leaves as they were, and that then do not fit the surface.
+std::vector<std::string> normals_left(const LayerTable& table, const StreamedMoves& moves) {
   std::vector<std::string> names;
+  if (moves.normals_still_fit) return names;
   for (const Layer& layer : table.layers)
-    if (layer.info.meaning == Meaning::normal) names.push_back(layer.info.name);
+    if (layer.info.meaning == Meaning::normal && !(moves.turner && holds_turnable_normals(layer)))
+      names.push_back(layer.info.name);
   return names;
 }
 
@@ -178,7 +181,7 @@ CommitReport commit_streamed(const Snapshot::Impl& at, const StreamedMoves& move
   CommitReport report = report_for(edit);
   report.revision = report.parent = at.version();
   report.nothing_changed = edit.charts.empty();
-  if (!report.nothing_changed) report.normals_left = normals_of(at.layers());
+  if (!report.nothing_changed) report.normals_left = normals_left(at.layers(), moves);
   if (!report.nothing_changed) publish_streamed(at, edit, moves.memory, options, operation, stage("write"), report);
   return report;
 }

@@ -89,7 +89,7 @@ class ThreeWayMerge {
   void conflict_at(std::uint32_t base_vertex, const char* what) {
     constexpr std::size_t kMost = 1000;
     if (merged_.conflicts.size() < kMost && told_.insert(base_vertex).second)
-      merged_.conflicts.push_back({chart_of(base_vertex), base_places_[base_vertex], what});
+      merged_.conflicts.push_back({{}, chart_of(base_vertex), base_places_[base_vertex], what});
   }
 
   [[nodiscard]] ChartId chart_of(std::uint32_t base_vertex) const {

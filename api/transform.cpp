@@ -34,6 +34,16 @@ double distance_to(const RegionShape& shape, const Point& p) {
   return 0;  // the whole mesh
 }
 
+/// The point that distances from a shape are measured along: of a ball its center.
+Point nearest_point(const RegionShape& shape, const Point& p) {
+  if (const auto* ball = std::get_if<InSphere>(&shape)) return ball->center;
+  if (const auto* point = std::get_if<NearestTo>(&shape)) return point->point;
+  Point nearest = p;
+  if (const auto* box = std::get_if<InBox>(&shape))
+    for (int a = 0; a < 3; ++a) nearest[a] = std::clamp(p[a], box->lo[a], std::max(box->lo[a], box->hi[a]));
+  return nearest;
+}
+
 /// The shape with all that is less than `by` away from it.
 RegionShape widened(const RegionShape& shape, double by) {
   if (const auto* box = std::get_if<InBox>(&shape)) {
@@ -57,14 +67,30 @@ class Falloff {
   Falloff(const Region& region, double falloff) : shapes_(region.shapes), falloff_(falloff) {}
 
   [[nodiscard]] double weight(const Point& p) const {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const RegionShape& shape : shapes_) nearest = std::min(nearest, distance_to(shape, p));
-    if (nearest >= falloff_) return 0;
-    const double x = 1 - nearest / falloff_;
+    const double x = share_left(p);
     return x * x * (3 - 2 * x);
   }
 
+  /// How the weight grows along the axes.
+  [[nodiscard]] Point gradient(const Point& p) const {
+    const double x = share_left(p);
+    const double slope = -6 * x * (1 - x) / falloff_;
+    const RegionShape& shape =
+        *std::ranges::min_element(shapes_, {}, [&](const RegionShape& candidate) { return distance_to(candidate, p); });
+    const Point from = nearest_point(shape, p);
+    const double distance = distance_to(InBox{from, from}, p);
+    if (slope == 0 || distance == 0) return {};
+    return {slope * (p.x - from.x) / distance, slope * (p.y - from.y) / distance, slope * (p.z - from.z) / distance};
+  }
+
  private:
+  /// 1 within the shapes, 0 from `falloff` on.
+  [[nodiscard]] double share_left(const Point& p) const {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const RegionShape& shape : shapes_) nearest = std::min(nearest, distance_to(shape, p));
+    return nearest >= falloff_ ? 0 : 1 - nearest / falloff_;
+  }
+
   const std::vector<RegionShape>& shapes_;
   double falloff_;
 };
@@ -152,6 +178,36 @@ detail::Mover fading_mover(const Snapshot::Impl& at, const Region& region, const
   };
 }
 
+detail::Derivative linear_part(const Matrix& m) { return {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}; }
+
+/// None where normals stay: for translations.
+detail::NormalTurner rigid_turner(const Snapshot::Impl& at, const std::vector<ChartId>& charts, const Matrix& matrix) {
+  if (linear_part(matrix) == linear_part(translation({}))) return {};
+  return [map = detail::normal_map(linear_part(matrix)), inside = std::make_shared<VerticesOf>(at, charts)](
+             const VertexKey& key, const Point&) -> std::optional<detail::Derivative> {
+    if (!inside->contains(key)) return std::nullopt;
+    return map;
+  };
+}
+
+/// The derivative of p + weight(p) * (m * p - p).
+detail::NormalTurner fading_turner(const Region& region, const TransformOptions& options) {
+  return [matrix = options.matrix, falloff = Falloff(region, options.falloff)](
+             const VertexKey&, const Point& position) -> std::optional<detail::Derivative> {
+    const double weight = falloff.weight(position);
+    if (weight == 0) return std::nullopt;
+    const Point target = mapped(matrix, position), gradient = falloff.gradient(position);
+    detail::Derivative derivative = linear_part(matrix);
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 3; ++column) {
+        const double unit = row == column;
+        double& x = derivative[static_cast<std::size_t>(3 * row + column)];
+        x = unit + weight * (x - unit) + (target[row] - position[row]) * gradient[column];
+      }
+    return detail::normal_map(derivative);
+  };
+}
+
 }  // namespace
 
 Matrix translation(const Point& by) { return {1, 0, 0, by.x, 0, 1, 0, by.y, 0, 0, 1, by.z, 0, 0, 0, 1}; }
@@ -200,9 +256,17 @@ CommitReport Repository::transform(std::string_view mesh, const Region& region, 
   if (options.falloff > 0)
     for (RegionShape& shape : wide.shapes) shape = widened(shape, options.falloff);
   const std::vector<ChartId> charts = base.find(wide);
-  detail::StreamedMoves moves{charts, options.falloff == 0, {}, options.memory, folder()};
+  detail::StreamedMoves moves{.region = charts,
+                              .border_moves = options.falloff == 0,
+                              .mover = {},
+                              .turner = {},
+                              .memory = options.memory,
+                              .scratch_folder = folder()};
   moves.mover = options.falloff > 0 ? fading_mover(base.impl(), region, options)
                                     : rigid_mover(base.impl(), moves.region, options.matrix);
+  moves.turner =
+      options.falloff > 0 ? fading_turner(region, options) : rigid_turner(base.impl(), moves.region, options.matrix);
+  moves.normals_still_fit = !moves.turner;
   CommitReport report = detail::commit_streamed(base.impl(), moves, options.commit, "transform");
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;

@@ -7,6 +7,7 @@
 
 #include "api/chart_difference.h"
 #include "api/edited_region_builder.h"
+#include "api/limited_edit.h"
 #include "api/region_match.h"
 #include "api/region_mesh.h"
 #include "api/version_figures.h"
@@ -137,24 +138,26 @@ MergedRoots merge_roots(const std::shared_ptr<db::Store>& store, VersionId base,
   return merged;
 }
 
-/// Publishes a version that takes meshes over by their roots.
-VersionId publish_roots(db::Writer& writer, const MergedRoots& merged, VersionId tip, VersionId theirs,
-                        const CommitOptions& options, const std::string& message) {
-  db::CommitInfo info;
-  info.branch = options.branch;
-  info.expected_tip = tip;
-  info.parents = {tip, theirs};
-  info.author = options.author;
-  info.message = message;
-  info.attempt = db::new_attempt_id();
-  info.roots = merged.roots;
-  info.changed = merged.taken;
-  VersionFigures figures;
-  figures.operation = "merge";
-  for (const db::ChangedCharts& taken : merged.taken) figures.charts_touched += taken.charts.size();
-  info.figures = encode_figures(figures);
-  return writer.publish(info);
-}
+/// Edits of meshes that two versions both hold, each with the other version's state as its goal.
+class EditsBetween {
+ public:
+  EditsBetween(const std::shared_ptr<db::Store>& store, VersionId from, VersionId to,
+               std::span<const db::MeshRoot> meshes, std::string_view operation, unsigned threads,
+               const std::optional<Region>& within = {}) {
+    const auto before = store->roots(from), after = store->roots(to);
+    for (const db::MeshRoot& mesh : meshes) {
+      snapshots_.push_back(std::make_unique<Snapshot::Impl>(store, from, *root_with_id(before, mesh.mesh)));
+      snapshots_.push_back(std::make_unique<Snapshot::Impl>(store, to, *root_with_id(after, mesh.mesh)));
+      edits_.push_back(edit_between(*snapshots_.end()[-2], *snapshots_.back(), threads, within));
+      edits_.back().operation = operation;
+    }
+  }
+  [[nodiscard]] std::span<const PendingEdit> edits() const { return edits_; }
+
+ private:
+  std::vector<std::unique_ptr<Snapshot::Impl>> snapshots_;
+  std::vector<PendingEdit> edits_;
+};
 
 }  // namespace
 
@@ -162,7 +165,8 @@ EditedRegion mesh_as_edit(const Snapshot::Impl& at, const RegionMesh& region, co
   return MeshAsEdit(at, region, mesh).run();
 }
 
-PendingEdit edit_between(const Snapshot::Impl& from, const Snapshot::Impl& to, unsigned threads) {
+PendingEdit edit_between(const Snapshot::Impl& from, const Snapshot::Impl& to, unsigned threads,
+                         const std::optional<Region>& within) {
   if (from.root().mesh != to.root().mesh || !(from.record().lattice == to.record().lattice))
     throw Error(Errc::invalid_argument, "these versions do not hold the same mesh",
                 fmt::format("{} and {}", from.root().name, to.root().name), "name one mesh with --mesh");
@@ -182,76 +186,71 @@ PendingEdit edit_between(const Snapshot::Impl& from, const Snapshot::Impl& to, u
   edit.region = load_region(edit.parts, threads, nullptr, true);
   const RegionMesh mesh = load_region(std::span(&part, 1), threads, nullptr, true);
   edit.edited = mesh_as_edit(from, edit.region, mesh);
+  if (within) edit.edited = limited(from, edit.region, edit.edited, mesh, limits_of(*within, from, to));
   edit.changes = changes_of(from, edit.region, edit.edited);
   return edit;
-}
-
-CommitReport carry_over(const Snapshot::Impl& base, const Snapshot::Impl& theirs, const CommitOptions& options,
-                        std::string_view operation, VersionId second_parent) {
-  CommitOptions merging = options;
-  merging.merge = true;
-  PendingEdit edit = edit_between(base, theirs, options.threads);
-  edit.operation = operation;
-  return commit_edit(edit, merging, db::new_attempt_id(), second_parent);
 }
 
 MergeReport merge_version(const std::shared_ptr<db::Store>& store, VersionId theirs, const CommitOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   MergeReport report;
   report.theirs = theirs;
-  CommitOptions committing = options;
-  if (committing.message.empty()) committing.message = fmt::format("merge v{}", theirs.value);
-  auto writer = store->writer();
-  const VersionId tip = writer->tip(options.branch);
-  if (!tip) throw Error(Errc::not_found, fmt::format("there is no branch '{}'", options.branch));
-  report.base = store->merge_base(tip, theirs);
-  report.revision = report.parent = tip;
-  if (report.base == theirs) {
-    report.nothing_changed = true;
-  } else {
-    const MergedRoots merged = merge_roots(store, report.base, tip, theirs);
-    if (merged.both.size() > 1)
-      throw Error(Errc::conflict, "both sides changed several meshes", {},
-                  "merge versions that change one mesh each, one after the other");
-    if (merged.both.empty()) {
-      report.revision = publish_roots(*writer, merged, tip, theirs, committing, committing.message);
-      for (const db::ChangedCharts& taken : merged.taken) report.charts_taken += taken.charts.size();
-    } else {
-      if (!merged.taken.empty())
-        throw Error(Errc::conflict, "both sides changed one mesh, and one side others beside it", {},
-                    "merge versions that change one mesh each, one after the other");
-      writer.reset();
-      const auto root_at = [&](VersionId version) { return *root_with_id(store->roots(version), merged.both[0].mesh); };
-      const Snapshot::Impl base(store, report.base, root_at(report.base)), other(store, theirs, root_at(theirs));
-      report.commit = carry_over(base, other, committing, "merge", theirs);
-      if (report.commit.conflicts.empty()) report.revision = report.commit.revision;
+  CommitOptions merging = options;
+  merging.merge = true;
+  if (merging.message.empty()) merging.message = fmt::format("merge v{}", theirs.value);
+  if (!store->tip(options.branch)) throw Error(Errc::not_found, fmt::format("there is no branch '{}'", options.branch));
+  const auto make = [&](VersionId tip) -> std::optional<VersionDraft> {
+    report.base = store->merge_base(tip, theirs);
+    report.revision = report.parent = report.commit.parent = tip;
+    report.nothing_changed = report.base == theirs;
+    if (report.nothing_changed) return std::nullopt;
+    MergedRoots merged = merge_roots(store, report.base, tip, theirs);
+    VersionDraft draft;
+    if (!merged.both.empty()) {
+      const EditsBetween between(store, report.base, theirs, merged.both, "merge", options.threads);
+      std::vector<CommitReport> reports = reports_of(between.edits());
+      auto drawn = draft_of(between.edits(), tip, merging, reports);
+      report.commit = added_up(reports);
+      if (!drawn) return drawn;
+      draft = *std::move(drawn);
     }
-  }
+    draft.roots = std::move(merged.roots);
+    draft.taken = std::move(merged.taken);
+    draft.second_parent = theirs;
+    report.charts_taken = 0;
+    for (const db::ChangedCharts& taken : draft.taken) report.charts_taken += taken.charts.size();
+    return draft;
+  };
+  publish_on_tip(store, {}, merging, "merge", db::new_attempt_id(), make, report.commit);
+  if (report.commit.conflicts.empty() && !report.nothing_changed) report.revision = report.commit.revision;
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
 }
 
 CommitReport revert_version(const std::shared_ptr<db::Store>& store, VersionId version, std::string_view mesh,
-                            const CommitOptions& options) {
+                            const std::optional<Region>& within, const CommitOptions& options) {
   const db::VersionInfo info = store->version(version);
   if (info.parents.empty())
     throw Error(Errc::invalid_argument, fmt::format("version {} has no version before it", version.value), {},
                 "choose a later one");
-  const auto now = store->roots(version), before = store->roots(info.parents.front());
-  std::vector<db::MeshRoot> changed;
-  for (const db::MeshRoot& root : now)
-    if (const db::MeshRoot* old = root_with_id(before, root.mesh); old && !(*old == root))
-      if (mesh.empty() || root.name == mesh) changed.push_back(root);
-  if (changed.size() != 1)
+  const VersionId parent = info.parents.front();
+  std::vector<db::MeshRoot> changed = store->roots(version);
+  const auto before = store->roots(parent);
+  std::erase_if(changed, [&](const db::MeshRoot& root) {
+    const db::MeshRoot* old = root_with_id(before, root.mesh);
+    return !old || *old == root || !(mesh.empty() || root.name == mesh);
+  });
+  if (changed.empty())
+    throw Error(Errc::invalid_argument, fmt::format("version {} changed no mesh that was there before", version.value));
+  if (changed.size() > 1 && within)
     throw Error(Errc::invalid_argument,
-                changed.empty() ? fmt::format("version {} changed no mesh that was there before", version.value)
-                                : fmt::format("version {} changed several meshes", version.value),
-                {}, changed.empty() ? "" : "name one with --mesh");
+                fmt::format("version {} changed several meshes, a region is of one", version.value), {},
+                "name it with --mesh");
   CommitOptions reverting = options;
+  reverting.merge = true;
   if (reverting.message.empty()) reverting.message = fmt::format("revert v{}: {}", version.value, info.message);
-  const Snapshot::Impl from(store, version, changed.front());
-  const Snapshot::Impl to(store, info.parents.front(), *root_with_id(before, changed.front().mesh));
-  return carry_over(from, to, reverting, "revert", {});
+  const EditsBetween between(store, version, parent, changed, "revert", options.threads, within);
+  return commit_edits(between.edits(), reverting, db::new_attempt_id());
 }
 
 }  // namespace ramcdb::detail

@@ -223,39 +223,47 @@ Json of(const VerifyReport::Problem& problem) {
 Json of(const std::vector<MergeConflict>& conflicts) {
   Json places = Json::array();
   for (const MergeConflict& conflict : conflicts)
-    places.push_back({{"chart", conflict.chart.value},
+    places.push_back({{"mesh", conflict.mesh},
+                      {"chart", conflict.chart.value},
                       {"place", {conflict.place.x, conflict.place.y, conflict.place.z}},
                       {"what", conflict.what}});
   return places;
 }
 
 Json of(const CommitReport& report) {
-  return {{"revision", report.revision.value},
-          {"parent", report.parent.value},
-          {"charts_touched", report.charts_touched},
-          {"charts_reencoded", report.charts_reencoded},
-          {"charts_added", report.charts_added},
-          {"charts_removed", report.charts_removed},
-          {"wires_reencoded", report.wires_reencoded},
-          {"ranges_expanded", report.ranges_expanded},
-          {"vertices_moved", report.vertices_moved},
-          {"vertices_added", report.vertices_added},
-          {"vertices_removed", report.vertices_removed},
-          {"max_displacement", report.max_displacement},
-          {"bytes_written", report.bytes_written},
-          {"seconds", report.seconds},
-          {"values_changed", report.values_changed},
-          {"layers_reencoded", report.layers_reencoded},
-          {"nothing_changed", report.nothing_changed},
-          {"conflicts", of(report.conflicts)},
-          {"merged", report.merged},
-          {"conflict_places", of(report.conflict_places)},
-          {"normals_left", report.normals_left},
-          {"faces_added", report.faces_added},
-          {"faces_removed", report.faces_removed},
-          {"added", of(report.added)},
-          {"removed", of(report.removed)},
-          {"notes", of(report.notes)}};
+  Json json = {{"revision", report.revision.value},
+               {"parent", report.parent.value},
+               {"charts_touched", report.charts_touched},
+               {"charts_reencoded", report.charts_reencoded},
+               {"charts_added", report.charts_added},
+               {"charts_removed", report.charts_removed},
+               {"wires_reencoded", report.wires_reencoded},
+               {"ranges_expanded", report.ranges_expanded},
+               {"vertices_moved", report.vertices_moved},
+               {"vertices_added", report.vertices_added},
+               {"vertices_removed", report.vertices_removed},
+               {"max_displacement", report.max_displacement},
+               {"bytes_written", report.bytes_written},
+               {"seconds", report.seconds},
+               {"values_changed", report.values_changed},
+               {"layers_reencoded", report.layers_reencoded},
+               {"nothing_changed", report.nothing_changed},
+               {"conflicts", of(report.conflicts)},
+               {"merged", report.merged},
+               {"conflict_places", of(report.conflict_places)},
+               {"normals_left", report.normals_left},
+               {"faces_added", report.faces_added},
+               {"faces_removed", report.faces_removed},
+               {"added", of(report.added)},
+               {"removed", of(report.removed)},
+               {"notes", of(report.notes)}};
+  if (report.per_mesh.empty()) return json;
+  json["meshes"] = Json::array();
+  for (const CommitReport& of_mesh : report.per_mesh) {
+    json["meshes"].push_back(of(of_mesh));
+    json["meshes"].back()["mesh"] = of_mesh.mesh;
+  }
+  return json;
 }
 
 }  // namespace
@@ -333,18 +341,20 @@ std::string diff_json(const DiffReport& report) {
 }
 
 std::string merge_json(const MergeReport& report) {
-  return printed({{"revision", report.revision.value},
-                  {"parent", report.parent.value},
-                  {"theirs", report.theirs.value},
-                  {"base", report.base.value},
-                  {"nothing_changed", report.nothing_changed},
-                  {"charts_taken", report.charts_taken},
-                  {"charts_reencoded", report.commit.charts_reencoded},
-                  {"vertices_moved", report.commit.vertices_moved},
-                  {"bytes_written", report.commit.bytes_written},
-                  {"conflicts", of(report.commit.conflicts)},
-                  {"conflict_places", of(report.commit.conflict_places)},
-                  {"seconds", report.seconds}});
+  Json json = {{"revision", report.revision.value},
+               {"parent", report.parent.value},
+               {"theirs", report.theirs.value},
+               {"base", report.base.value},
+               {"nothing_changed", report.nothing_changed},
+               {"charts_taken", report.charts_taken},
+               {"charts_reencoded", report.commit.charts_reencoded},
+               {"vertices_moved", report.commit.vertices_moved},
+               {"bytes_written", report.commit.bytes_written},
+               {"conflicts", of(report.commit.conflicts)},
+               {"conflict_places", of(report.commit.conflict_places)},
+               {"seconds", report.seconds}};
+  if (!report.commit.per_mesh.empty()) json["meshes"] = of(report.commit)["meshes"];
+  return printed(json);
 }
 
 std::string commit_json(const CommitReport& report) { return printed(of(report)); }

@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "cli/chart_list.h"
 #include "cli/conflict_text.h"
 #include "cli/failure.h"
 #include "cli/json_out.h"
@@ -25,8 +24,9 @@ std::string report_text(const MergeReport& report, const std::string& branch) {
     return branch + " holds " + version_text(report.theirs) + " already: no version written\n";
   const std::string head = version_text(report.revision) + " merges " + version_text(report.theirs) + " into " +
                            version_text(report.parent) + ", from " + version_text(report.base) + " on: ";
-  if (report.commit.revision)
-    return head + counted(report.commit.charts_reencoded, "chart") + " re-encoded, " +
+  if (report.commit.charts_reencoded > 0)
+    return head + (report.charts_taken ? counted(report.charts_taken, "chart") + " taken over, " : "") +
+           counted(report.commit.charts_reencoded, "chart") + " re-encoded, " +
            counted(report.commit.vertices_moved, "vertex", "vertices") + " moved, " +
            counted(report.commit.faces_added, "face") + " added, " + counted(report.commit.faces_removed, "face") +
            " removed, wrote " + counted(report.commit.bytes_written, "byte") + " in " + duration(report.seconds) + "\n";
@@ -42,9 +42,8 @@ int run_merge(const MergeCommand& command) {
   else if (!command.mode.quiet && !conflict)
     say(report_text(report, command.options.branch));
   if (!conflict) return kDone;
-  complain("both sides changed charts " + chart_list(report.commit.conflicts) +
-           " in different ways, nothing was written:" + conflict_text(report.commit.conflict_places) +
-           "edit one side there, or revert it, and merge again");
+  complain("both sides changed " + conflicting_charts(report.commit) + " in different ways, nothing was written:" +
+           conflict_text(report.commit.conflict_places) + "edit one side there, or revert it, and merge again");
   return kConflict;
 }
 

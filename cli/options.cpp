@@ -96,6 +96,8 @@ void add_author(CLI::App& verb, std::string& author) {
       ->check(CLI::Validator(refuse_empty, ""));
 }
 
-void add_example(CLI::App& verb, const std::string& command) { verb.footer("Example:\n  " + command); }
+void add_example(CLI::App& verb, const std::string& command, const std::string& notes) {
+  verb.footer(notes + (notes.empty() ? "" : "\n\n") + "Example:\n  " + command);
+}
 
 }  // namespace ramcdb::cli

@@ -48,7 +48,7 @@ void add_message(CLI::App& verb, std::string& message, bool required);
 /// --author; sets `author` to default_author() first.
 void add_author(CLI::App& verb, std::string& author);
 
-/// Adds the verb's example to its help: a command line as it can be pasted.
-void add_example(CLI::App& verb, const std::string& command);
+/// Adds the verb's example to its help: a command line as it can be pasted. \param notes lines above it
+void add_example(CLI::App& verb, const std::string& command, const std::string& notes = {});
 
 }  // namespace ramcdb::cli

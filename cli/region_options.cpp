@@ -8,13 +8,21 @@
 namespace ramcdb::cli {
 namespace {
 
-void add_shape(CLI::App& verb, const char* name, std::vector<std::string>& texts, const char* form, const char* help) {
+const char* group_of(RegionUse use) {
+  return use == RegionUse::charts
+             ? "REGION (one or more, united; always whole charts)"
+             : "REGION (one or more, united; boxes, balls and frusta as they are, anything else, and with --grow all, "
+               "whole charts)";
+}
+
+void add_shape(CLI::App& verb, RegionUse use, const char* name, std::vector<std::string>& texts, const char* form,
+               const std::string& help) {
   verb.add_option(name, texts, help)
       ->type_name(form)
       ->expected(1)
       ->take_all()
       ->allow_extra_args(false)  // --box A --box B, never --box A B: B would swallow a positional
-      ->group("REGION (one or more, united; always whole charts)");
+      ->group(group_of(use));
 }
 
 template <class Parse>
@@ -24,16 +32,21 @@ void add_shapes(Region& region, const std::vector<std::string>& texts, Parse par
 
 }  // namespace
 
-void add_region(CLI::App& verb, RegionOptions& options) {
-  add_shape(verb, "--box", options.boxes, "X0,Y0,Z0,X1,Y1,Z1", "Charts whose bounding box meets the box");
-  add_shape(verb, "--sphere", options.spheres, "X,Y,Z,R", "Charts whose bounding box meets the ball");
-  add_shape(verb, "--charts", options.charts, "5,9-12", "These charts");
-  add_shape(verb, "--near", options.points, "X,Y,Z", "The chart closest to the point");
-  add_shape(verb, "--frustum", options.frusta, "M00,M01,...,M33",
-            "Charts that a camera sees: 16 numbers, its row-major clip matrix");
-  const char* group = "REGION (one or more, united; always whole charts)";
-  verb.add_flag("--all", options.all, "The whole mesh")->group(group);
-  verb.add_option("--grow", options.grow, "Then add K rings of neighbour charts")->type_name("K")->group(group);
+void add_region(CLI::App& verb, RegionOptions& options, RegionUse use) {
+  const bool whole = use == RegionUse::charts;
+  const auto add = [&](const char* name, std::vector<std::string>& texts, const char* form, const std::string& help) {
+    add_shape(verb, use, name, texts, form, help);
+  };
+  add("--box", options.boxes, "X0,Y0,Z0,X1,Y1,Z1",
+      whole ? "Charts whose bounding box meets the box" : "What is in a box");
+  add("--sphere", options.spheres, "X,Y,Z,R", whole ? "Charts whose bounding box meets the ball" : "What is in a ball");
+  add("--charts", options.charts, "5,9-12", "These charts");
+  add("--near", options.points, "X,Y,Z", "The chart closest to the point");
+  add("--frustum", options.frusta, "M00,M01,...,M33",
+      std::string(whole ? "Charts that a camera sees" : "What a camera sees") +
+          ": 16 numbers, its row-major clip matrix");
+  verb.add_flag("--all", options.all, "The whole mesh")->group(group_of(use));
+  verb.add_option("--grow", options.grow, "Then add K rings of neighbour charts")->type_name("K")->group(group_of(use));
 }
 
 bool is_empty(const RegionOptions& options) {

@@ -18,7 +18,13 @@ struct RegionOptions {
   unsigned grow = 0;
 };
 
-void add_region(CLI::App& verb, RegionOptions& options);
+/// What a verb does with a region.
+enum class RegionUse {
+  charts,  ///< takes all charts that it meets
+  parts,   ///< its boxes, balls and frusta cut through charts
+};
+
+void add_region(CLI::App& verb, RegionOptions& options, RegionUse use = RegionUse::charts);
 
 /// Whether no shape is given.
 [[nodiscard]] bool is_empty(const RegionOptions& options);

@@ -89,7 +89,7 @@ class Attempt : public Writer {
 
   VersionId publish(const CommitInfo& info) override {
     if (const auto earlier = catalogue_.published_by(info.attempt)) return *earlier;
-    if (!info.expected_tip) require_ref_name(info.branch);
+    if (!info.expected_tip && !info.branch.empty()) require_ref_name(info.branch);
     if (const VersionId now = tip(info.branch); now != info.expected_tip)
       throw Error(Errc::conflict, fmt::format("branch {} moved to version {}", info.branch, now.value),
                   fmt::format("expected version {}", info.expected_tip.value), "check out again");

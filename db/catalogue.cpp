@@ -149,7 +149,7 @@ void Catalogue::publish(const CommitRecord& record, VersionId expected_tip) {
     throw Error(Errc::conflict, fmt::format("branch {} moved to version {}", record.info.branch, tip.value),
                 fmt::format("expected version {}", expected_tip.value), "check out again");
   insert(record);
-  refs().set({record.info.branch, false, record.info.id});
+  if (!record.info.branch.empty()) refs().set({record.info.branch, false, record.info.id});
   locks().sweep(record.info.time_us);
   fail_point("row.before_commit");
   transaction.commit();

@@ -37,6 +37,11 @@ using Matrix = std::array<double, 16>;
 /// without a direction.
 [[nodiscard]] Matrix rotation(const Point& axis, double degrees, const Point& center);
 
+/// Moves all vertices of a region, or each by its share.
+///
+/// Normals kept as attributes (three floats) turn with the surface, their lengths kept: by the inverse transpose of the
+/// map's derivative, with a falloff of what the map then is at their place. Those of vertices and corners follow their
+/// vertex, those of faces all three.
 struct TransformOptions {
   Matrix matrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   /// 0: all vertices of the region's charts move, and no others. Else a distance in model units: every vertex moves by

@@ -173,12 +173,14 @@ struct ChangeReport : ChangeFigures {
 
 /// A place that two edits changed in different ways.
 struct MergeConflict {
+  std::string mesh;
   ChartId chart;  ///< of the edit's own region
   Point place;    ///< where it was before either edit; model units
   std::string what;
 };
 
 struct CommitReport {
+  std::string mesh;  ///< empty where it is of several
   FileNotes notes;
   bool merged = false;                         ///< it was merged with what others had done to the same charts
   std::vector<MergeConflict> conflict_places;  ///< of a merge that failed, at most 1,000
@@ -196,6 +198,9 @@ struct CommitReport {
   std::uint64_t bytes_written = 0;
   double seconds = 0;
   std::vector<ChartId> conflicts;  ///< not empty: refused, nothing was written
+  /// Where a merge or a revert changes several meshes, or would: what it does to each. The counts above are their sums,
+  /// and the lists of charts follow each other in this order. Empty for one mesh.
+  std::vector<CommitReport> per_mesh;
   /// Of a built-in edit: attributes with normals, which it left as they were.
   std::vector<std::string> normals_left;
 };
@@ -206,7 +211,7 @@ struct MergeReport {
   VersionId parent, theirs, base;
   bool nothing_changed = false;    ///< the branch holds it already
   std::uint64_t charts_taken = 0;  ///< by their index pages, no blob copied
-  CommitReport commit;             ///< where both sides changed a mesh: what was merged, or the conflicts
+  CommitReport commit;             ///< where both sides changed meshes: what was merged, or the conflicts
   double seconds = 0;
 };
 

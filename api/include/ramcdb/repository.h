@@ -223,14 +223,22 @@ class Repository {
   /// they commit only where no chart of theirs was coded anew, so check out again.
   RepackReport repack(std::string_view mesh, const RepackOptions& options);
 
-  /// Merges a branch or another revision into `options.branch`. What one side alone changed is taken as it is; where
-  /// both changed a mesh, charts are merged three ways as with CommitOptions::merge. Conflicts come back in the
-  /// report, with nothing written. Throws not_found, and conflict where both sides changed several meshes.
+  /// Merges a branch or another revision into `options.branch`, all meshes in one version. What one side alone changed
+  /// is taken as it is; where both changed a mesh, charts are merged three ways as with CommitOptions::merge. Conflicts
+  /// of all meshes come back in the report, with nothing written. Throws not_found, and conflict where a mesh was
+  /// changed on one side and is gone on the other, or both sides added one of the same name.
   MergeReport merge(std::string_view revision, const CommitOptions& options);
 
-  /// Takes back what a version did to a mesh (may be empty where it changed one), on top of what came later, as a new
-  /// version. Conflicts with later edits of the same vertices come back in the report, with nothing written.
-  CommitReport revert(std::string_view revision, std::string_view mesh, const CommitOptions& options);
+  /// Takes back what a version did to a mesh, or when `mesh` is empty to all that it changed and that were there before
+  /// it, on top of what came later, as one new version. Conflicts with later edits of the same vertices come back in
+  /// the report, with nothing written. \param within take back only what the version changed in this region. Boxes,
+  /// balls and frusta without `grow` cut through charts: vertices inside, before or after the version, go back to where
+  /// they were, and so do the values of vertices inside and of faces whose bounding box is met. Where the version
+  /// replaced faces, each island of such faces (connected by vertices) that is met goes back whole. All other regions
+  /// are whole charts, as the version has them, or of those that it removed, as they were. Throws not_found as
+  /// Snapshot::find.
+  CommitReport revert(std::string_view revision, std::string_view mesh, const CommitOptions& options,
+                      const std::optional<Region>& within = {});
 
   struct VerifyOptions {
     bool quick = false;  ///< checksums and references only, no decoding
