@@ -94,8 +94,10 @@ struct FlatEdit {
   /// Does the same to a surface. Throws logic_error where that is not what the edit was made on: an update would be
   /// lost.
   void apply(FlatSurface& surface) const {
-    for (const Change& change : vertices)
+    for (const Change& change : vertices) {
       if (change.is) apply(change, surface);
+      if (!change.is) expect_unchanged(change, surface);
+    }
     for (const auto& face : removed)
       if (surface.faces.erase(face) == 0 && !may_merge) throw std::logic_error(id + ": a removed face is gone");
     for (const auto& face : added)
@@ -121,6 +123,14 @@ struct FlatEdit {
     if (it->second.color == FlatSurface::kUnknown) it->second.color = change.before.color;
     change_number(it->second.color, change.before.color, change.after.color);
   }
+  /// What nobody saw is not taken away.
+  void expect_unchanged(const Change& change, const FlatSurface& surface) const {
+    const auto it = surface.vertices.find(change.name);
+    if (it == surface.vertices.end()) return;
+    const bool same_color = it->second.color == change.before.color || it->second.color == FlatSurface::kUnknown;
+    if (it->second.height != change.before.height || !same_color)
+      throw std::logic_error(id + ": removes a vertex that others changed");
+  }
   template <class Number>
   void change_number(Number& now, Number before, Number after) const {
     if (before == after) return;
@@ -134,8 +144,8 @@ struct FlatEdit {
   std::string text = fmt::format("edit {} {:d} {} {} {}\n", edit.id, edit.may_merge, edit.vertices.size(),
                                  edit.removed.size(), edit.added.size());
   for (const FlatEdit::Change& c : edit.vertices)
-    text += fmt::format("{} {} {:d} {:d} {} {} {} {}\n", c.name[0], c.name[1], c.was, c.is, c.before.height, c.before.color,
-                        c.after.height, c.after.color);
+    text += fmt::format("{} {} {:d} {:d} {} {} {} {}\n", c.name[0], c.name[1], c.was, c.is, c.before.height,
+                        c.before.color, c.after.height, c.after.color);
   for (const auto* faces : {&edit.removed, &edit.added})
     for (const auto& face : *faces) {
       for (const auto& name : face) text += fmt::format("{} {} ", name[0], name[1]);
