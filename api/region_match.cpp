@@ -135,8 +135,8 @@ auto by_position(std::span<const LatticePoint> points) {
   return [points](std::uint32_t a, std::uint32_t b) { return std::tie(points[a], a) < std::tie(points[b], b); };
 }
 
-/// Pairs vertices without faces: by their ids, by their places, and if as many are left on either side, in order of
-/// position.
+/// Pairs vertices without faces: by their ids, by their places, also where one has got its first or lost its last face,
+/// and if as many are left on either side, in order of position.
 class IsolatedVertices {
  public:
   IsolatedVertices(const RegionMesh& region, const RegionFaces& faces, const OtherMesh& other, Found& found)
@@ -153,14 +153,16 @@ class IsolatedVertices {
   }
 
   void pair(const std::vector<std::uint32_t>& named) {
+    pair_in_place(mine_, untaken_of_other());
+    drop_paired();
     if (none_at_all_) return;
     for (const std::uint32_t w : theirs_)
       if (!named.empty() && named[w] != kNowhere && !taken_[named[w]]) pair(named[w], w);
     drop_paired();
+    pair_in_place(untaken_of_region(), theirs_);
+    drop_paired();
     std::ranges::sort(mine_, by_position(region_.points));
     std::ranges::sort(theirs_, by_position(other_.points));
-    pair_in_place();
-    drop_paired();
     for (std::size_t i = 0; mine_.size() == theirs_.size() && i < mine_.size(); ++i) pair(mine_[i], theirs_[i]);
   }
   /// Those that stay because the other mesh cannot say anything of them.
@@ -179,13 +181,37 @@ class IsolatedVertices {
     std::erase_if(theirs_, [&](std::uint32_t w) { return found_.region_vertex[w] != kNowhere; });
   }
 
-  void pair_in_place() {
-    for (std::size_t i = 0, j = 0; i < mine_.size() && j < theirs_.size();) {
-      const auto order = region_.points[mine_[i]] <=> other_.points[theirs_[j]];
-      if (order == 0) pair(mine_[i], theirs_[j]);
+  [[nodiscard]] std::vector<std::uint32_t> untaken_of_region() const {
+    std::vector<std::uint32_t> untaken;
+    for (std::uint32_t v = 0; v < taken_.size(); ++v)
+      if (!taken_[v]) untaken.push_back(v);
+    return untaken;
+  }
+  /// The first of those that are one.
+  [[nodiscard]] std::vector<std::uint32_t> untaken_of_other() const {
+    std::vector<std::uint32_t> untaken;
+    std::vector<bool> seen(found_.fresh.size(), false);
+    for (std::uint32_t w = 0; w < found_.fresh.size(); ++w) {
+      if (found_.region_vertex[w] == kNowhere && !seen[found_.fresh[w]]) untaken.push_back(w);
+      seen[found_.fresh[w]] = true;
+    }
+    return untaken;
+  }
+
+  void pair_in_place(std::vector<std::uint32_t> mine, std::vector<std::uint32_t> theirs) {
+    if (mine.empty() || theirs.empty()) return;
+    std::ranges::sort(mine, by_position(region_.points));
+    std::ranges::sort(theirs, by_position(other_.points));
+    std::vector<std::uint32_t> of_fresh(found_.fresh.size(), kNowhere);
+    for (std::size_t i = 0, j = 0; i < mine.size() && j < theirs.size();) {
+      const auto order = region_.points[mine[i]] <=> other_.points[theirs[j]];
+      if (order == 0) of_fresh[found_.fresh[theirs[j]]] = mine[i];
       i += order <= 0;
       j += order >= 0;
     }
+    for (std::uint32_t w = 0; w < found_.fresh.size(); ++w)
+      if (found_.region_vertex[w] == kNowhere && of_fresh[found_.fresh[w]] != kNowhere)
+        pair(of_fresh[found_.fresh[w]], w);
   }
 
   const RegionMesh& region_;

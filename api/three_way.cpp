@@ -17,6 +17,9 @@ bool same_place(const Point& a, const Point& b) {
   return same_number(a.x, b.x) && same_number(a.y, b.y) && same_number(a.z, b.z);
 }
 
+constexpr const char* kMovedGone = "a vertex that one side moved was removed by the other";
+constexpr const char* kValueGone = "a vertex or face of which one side changed a value was removed by the other";
+
 class ThreeWayMerge {
  public:
   ThreeWayMerge(const Snapshot::Impl& tip, const RegionMesh& base, const EditedRegion& ours, const RegionMesh& theirs)
@@ -35,6 +38,7 @@ class ThreeWayMerge {
     index_ours();
     mark_new_edges();
     add_vertices();
+    expect_faces_of_values();
     add_faces();
     add_new_faces();
     if (!merged_.conflicts.empty()) return std::move(merged_);
@@ -112,14 +116,18 @@ class ThreeWayMerge {
       const std::uint32_t b = base_vertex_[v];
       if (b != kNew && our_vertex_[b] == kNew) {
         if (used[v]) conflict_at(b, "a vertex that one side uses was removed by the other");
+        if (!same_place(their_places_[v], base_places_[b])) conflict_at(b, kMovedGone);
+        if (has_new_values(AttributeOf::vertex, b, theirs_.attributes, v)) conflict_at(b, kValueGone);
         if (!used[v]) continue;
       }
       vertex_[v] = builder_.add_vertex(v, place_of(v));
       merge_vertex_values(v);
     }
     for (std::uint32_t b = 0; b < base_.points.size(); ++b)
-      if (our_vertex_[b] != kNew && their_vertex_[b] == kNew && moved_by_us(b))
-        conflict_at(b, "a vertex that one side moved was removed by the other");
+      if (our_vertex_[b] != kNew && their_vertex_[b] == kNew) {
+        if (moved_by_us(b)) conflict_at(b, kMovedGone);
+        if (has_new_values(AttributeOf::vertex, b, ours_.mesh.attributes, our_vertex_[b])) conflict_at(b, kValueGone);
+      }
     our_new_vertex_.assign(ours_.vertex_source.size(), kNew);
     for (std::uint32_t v = 0; v < ours_.vertex_source.size(); ++v)
       if (ours_.vertex_source[v] == kNew) {
@@ -155,6 +163,24 @@ class ThreeWayMerge {
     }
   }
 
+  /// Whether one side changed a value of a vertex, face or corner of the base.
+  [[nodiscard]] bool has_new_values(AttributeOf of, std::size_t base, const std::vector<Attribute>& side,
+                                    std::size_t there) const {
+    for (std::size_t a = 0; a < side.size(); ++a)
+      for (std::size_t k = 0; side[a].info.of == of && k < side[a].info.components; ++k)
+        if (!same_number(base_.attributes[a].values[base * side[a].info.components + k],
+                         side[a].values[there * side[a].info.components + k]))
+          return true;
+    return false;
+  }
+  [[nodiscard]] bool has_new_values(FaceMatch base, const std::vector<Attribute>& side, std::uint32_t face) const {
+    bool found = has_new_values(AttributeOf::face, base.face, side, face);
+    for (std::uint32_t i = 0; i < 3; ++i)
+      found = found || has_new_values(AttributeOf::corner, 3 * std::size_t{base.face} + (i + base.turn) % 3, side,
+                                      3 * std::size_t{face} + i);
+    return found;
+  }
+
   void merge_vertex_values(std::uint32_t v) {
     const std::uint32_t b = base_vertex_[v];
     if (b == kNew || our_vertex_[b] == kNew) return;
@@ -171,6 +197,17 @@ class ThreeWayMerge {
         const std::uint32_t turned = (i + base.turn) % 3;
         merge_value(a, 3 * f + i, 3 * base.face + turned, 3 * ours + turned, vertex);
       }
+    }
+  }
+
+  /// Values that one side changed of faces that the other does not have any more.
+  void expect_faces_of_values() {
+    for (std::uint32_t f = 0; f < base_.faces.size(); ++f) {
+      const std::uint32_t ours = our_face_[f], theirs = their_face_[f];
+      if ((ours == kNew) == (theirs == kNew)) continue;
+      if (theirs == kNew ? has_new_values(FaceMatch{f, 0}, ours_.mesh.attributes, ours)
+                         : has_new_values(base_face_[theirs], theirs_.attributes, theirs))
+        conflict_at(base_.faces[f][0], kValueGone);
     }
   }
 

@@ -64,6 +64,9 @@ void drop_pending_lists(const Transaction& transaction, const std::vector<Versio
 
 std::vector<VersionId> recover(Environment& environment, Catalogue& catalogue) {
   environment.sweep_readers();
+  // A writer that was killed after LMDB's commit may not have told other processes of it. Reading would still see what
+  // was there before; beginning to write finds out.
+  (void)environment.write();
   std::vector<VersionId> published;
   std::set<VersionId> unpublished;
   {

@@ -126,6 +126,73 @@ TEST_F(Merge, TheSameFacesChangedTwiceAreAConflict) {
   EXPECT_EQ(repository_->resolve("HEAD"), VersionId(2));
 }
 
+/// Values that one side changed are never lost with what the other side took away.
+class MergeOfValues : public ::testing::Test {
+ protected:
+  MergeOfValues() {
+    const TestMesh mesh = scan(2000);
+    mesh_file::MeshOutput out;
+    std::vector<Attribute> attributes{{{"heat", AttributeOf::vertex, NumberType::int16, 1, Meaning::other, {}, {}}, {}},
+                                      {{"kind", AttributeOf::face, NumberType::int16, 1, Meaning::other, {}, {}}, {}}};
+    attributes[0].values.assign(mesh.positions.size(), 1);
+    attributes[1].values.assign(mesh.faces.size(), 2);
+    std::vector<std::uint32_t> corners;
+    for (const Triangle& t : mesh.faces) corners.insert(corners.end(), t.begin(), t.end());
+    out.positions = mesh.positions;
+    out.corners = corners;
+    out.attributes = attributes;
+    (void)mesh_file::write_mesh(folder_ / "a.ply", mesh_file::Format::ply, out);
+    Repository::create(folder_ / "r");
+    (void)Repository::open(folder_ / "r").import(folder_ / "a.ply", {});
+  }
+
+  /// One side deletes a face with a vertex inside around it, the other changes values there; whoever comes second is
+  /// refused.
+  template <class Paint>
+  void expect_conflict(bool paint_first, Paint&& paint) {
+    Repository repository = Repository::open(folder_ / "r");
+    auto remover = repository.begin_edit(), painter = repository.begin_edit();
+    Patch &removed = remover.checkout({{WholeMesh{}}, 0}), &painted = painter.checkout({{WholeMesh{}}, 0});
+    removed.mesh().request_vertex_status();
+    removed.mesh().request_edge_status();
+    removed.mesh().request_face_status();
+    const auto vertex = inner(removed).front();
+    const std::uint32_t v = removed.mesh().property(removed.region_property(), vertex);
+    const std::uint32_t f =
+        removed.mesh().property(removed.region_face_property(), *removed.mesh().vf_iter(vertex)) - 1;
+    removed.mesh().delete_vertex(vertex);
+    paint(painted, v, f);
+    auto &first = paint_first ? painter : remover, &second = paint_first ? remover : painter;
+    const VersionId version = first.commit(options("first")).revision;
+    const CommitReport report = second.commit(options("second", true));
+    EXPECT_FALSE(report.conflict_places.empty());
+    EXPECT_EQ(repository.resolve("HEAD"), version);
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(MergeOfValues, OfAVertexThatIsRemovedAreAConflict) {
+  for (const bool paint_first : {false, true})
+    expect_conflict(paint_first,
+                    [](Patch& patch, std::uint32_t v, std::uint32_t) { patch.attribute("heat")->values[v] = 77; });
+}
+
+TEST_F(MergeOfValues, OfAFaceThatIsRemovedAreAConflict) {
+  for (const bool paint_first : {false, true})
+    expect_conflict(paint_first,
+                    [](Patch& patch, std::uint32_t, std::uint32_t f) { patch.attribute("kind")->values[f] = 77; });
+}
+
+TEST_F(MergeOfValues, AMoveOfAVertexThatIsRemovedIsAConflict) {
+  for (const bool paint_first : {false, true})
+    expect_conflict(paint_first, [](Patch& patch, std::uint32_t v, std::uint32_t) {
+      for (const auto vertex : patch.mesh().vertices())
+        if (patch.mesh().property(patch.region_property(), vertex) == v)
+          patch.mesh().point(vertex)[2] += 50 * patch.base().lattice().step;
+    });
+}
+
 TEST_F(Merge, BranchesOfDifferentChartsBecomeOne) {
   (void)repository_->create_branch("side");
   Patch *a = nullptr, *b = nullptr;

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <utility>
 
 namespace ramcdb::db::test {
 
@@ -29,7 +30,10 @@ class ChildProcess {
     ::_exit(::testing::Test::HasFailure() ? 1 : 0);
   }
   ChildProcess(ChildProcess&& other) noexcept : pid_(std::exchange(other.pid_, -1)) {}
-  ChildProcess& operator=(ChildProcess&&) = delete;
+  ChildProcess& operator=(ChildProcess&& other) noexcept {
+    std::swap(pid_, other.pid_);
+    return *this;
+  }
   ~ChildProcess() {
     if (pid_ <= 0) return;
     ::kill(pid_, SIGKILL);

@@ -1,3 +1,6 @@
+#include <fcntl.h>
+#include <sys/resource.h>
+
 #include <csignal>
 #include <stdexcept>
 
@@ -234,6 +237,58 @@ TEST_F(Crash, AKilledFirstCommitLeavesAnEmptyRepository) {
   const auto store = fresh.open();
   EXPECT_EQ(store->resolve(""), VersionId());
   expect_blobs(*store, first_, publish(*store, first_));
+  EXPECT_EQ(problems(*store), std::vector<std::string>{});
+}
+
+/// The number of the newest transaction as LMDB's lock file tells it to other processes, where on this platform it is.
+class ToldTransaction {
+ public:
+  explicit ToldTransaction(const fs::path& data)
+      : data_(::open(data.c_str(), O_RDONLY)), lock_(::open((data.string() + "-lock").c_str(), O_RDWR)) {}
+  ToldTransaction(const ToldTransaction&) = delete;
+  ~ToldTransaction() {
+    ::close(data_);
+    ::close(lock_);
+  }
+
+  /// Others go on seeing the one before, as long as nobody begins to write.
+  void set_back() const {
+    constexpr off_t kInMeta = 144, kInLock = 48;
+    const std::uint64_t newest = std::max(number(data_, kInMeta), number(data_, ::sysconf(_SC_PAGESIZE) + kInMeta));
+    ASSERT_EQ(number(lock_, kInLock), newest);
+    const std::uint64_t before = newest - 1;
+    ASSERT_EQ(::pwrite(lock_, &before, sizeof before, kInLock), 8);
+  }
+
+ private:
+  static std::uint64_t number(int file, off_t at) {
+    std::uint64_t value = 0;
+    EXPECT_EQ(::pread(file, &value, sizeof value, at), 8);
+    return value;
+  }
+
+  int data_, lock_;
+};
+
+/// LMDB's commit is on disk a moment before LMDB tells other processes of it; a writer may be killed in between.
+TEST(CrashBesideOthers, BlobsThatOtherProcessesWereNotToldOfAreTakenBack) {
+  const TempStore temp;
+  auto store = temp.open();  // and its lock file stays as it is
+  const std::vector<Blob> blobs = blobs_of(1);
+  ChildProcess child([&] {
+    store.reset();
+    const auto own = temp.open();
+    const auto writer = own->writer(10);
+    for (const Blob& blob : blobs) writer->put(blob.key, blob.bytes);
+    writer->flush();
+    ToldTransaction(temp / "data.mdb").set_back();
+    const rlimit nothing{0, 0};
+    ::setrlimit(RLIMIT_FSIZE, &nothing);
+    for (const Blob& blob : blobs_of(1000)) writer->put(blob.key, blob.bytes);
+    writer->flush();  // dies as it writes its first page, with LMDB's lock
+  });
+  EXPECT_EQ(child.wait() & 0x7f, SIGXFSZ);
+  expect_blobs(*store, blobs, publish(*store, blobs));
   EXPECT_EQ(problems(*store), std::vector<std::string>{});
 }
 
