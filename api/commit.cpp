@@ -53,6 +53,16 @@ std::vector<ChartId> charts_other_than(std::span<const RegionPart> parts, const 
   return others;
 }
 
+/// The charts that an index holds in the region's state.
+std::vector<ChartId> charts_as_in(std::span<const RegionPart> parts, const PageIndex& there) {
+  std::vector<ChartId> equal;
+  for (const RegionPart& part : parts)
+    for (const ChartId id : part.charts)
+      if (state_in(part.at->pages(), id) == state_in(there, id)) equal.push_back(id);
+  std::sort(equal.begin(), equal.end());
+  return equal;
+}
+
 const Snapshot::Impl& newest(std::span<const RegionPart> parts) {
   return *std::max_element(parts.begin(), parts.end(), [](const RegionPart& a, const RegionPart& b) {
             return a.at->version() < b.at->version();
@@ -256,7 +266,8 @@ std::optional<EncodedEdit> merge_on(const Snapshot::Impl& tip, const PendingEdit
   const RegionPart tip_part{&tip, {now.begin(), now.end()}};
   const RegionMesh base = load_region(parts, options.threads, nullptr, true);
   RegionMesh theirs = load_region(std::span(&tip_part, 1), options.threads, nullptr, true);
-  MergedEdit merged = merge_edits(tip, base, transferred(edit.edited, edit.region, base), theirs);
+  MergedEdit merged =
+      merge_edits(tip, base, transferred(edit.edited, edit.region, base), theirs, charts_as_in(parts, tip.pages()));
 
   const bool geometry = !edit.changes.moves.empty() || edit.changes.connectivity();
   const bool other_kinds = !(geometry && merged.theirs_moved) && !layers_overlap(edit, tip, report.conflicts);
