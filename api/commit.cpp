@@ -220,15 +220,23 @@ class TipPublisher {
   CommitReport& report_;
 };
 
+/// Whether a chart may be cut anew because of a small one beside it: those that others have locked stay.
+std::function<bool(ChartId)> recut_rule(const PendingEdit& edit, const CommitOptions& options, bool outside) {
+  return [&edit, &options, outside](ChartId id) {
+    if (std::ranges::binary_search(edit.region.charts, id)) return true;
+    const Snapshot::Impl& base = edit.base();
+    return outside && (options.ignore_locks || !is_locked(*base.store_handle(), base.root().mesh, id, options.author));
+  };
+}
+
 /// The charts that an edit touches, as a tip has them, and the edit of these.
-EncodedEdit encode_on(const Snapshot::Impl& tip, const PendingEdit& edit, unsigned threads) {
+EncodedEdit encode_on(const Snapshot::Impl& tip, const PendingEdit& edit, const CommitOptions& options) {
+  const unsigned threads = options.threads;
   const RegionPart part{&tip, {edit.changes.touched.begin(), edit.changes.touched.end()}};
   RegionMesh region = load_region(std::span(&part, 1), threads, nullptr, true);
   EditedRegion edited = transferred(edit.edited, edit.region, region);
-  const auto may_recut = [&](ChartId id) {
-    return edit.may_recut_outside || std::ranges::binary_search(edit.region.charts, id);
-  };
-  return encode_edit(tip, std::move(region), std::move(edited), may_recut, threads);
+  return encode_edit(tip, std::move(region), std::move(edited), recut_rule(edit, options, edit.may_recut_outside),
+                     threads);
 }
 
 /// Which charts' layers others changed, of those that an edit changes as well.
@@ -277,8 +285,8 @@ std::optional<EncodedEdit> merge_on(const Snapshot::Impl& tip, const PendingEdit
   }
   report.conflicts.clear();
   report.merged = true;
-  const auto may_recut = [&](ChartId) { return true; };
-  return encode_edit(tip, std::move(theirs), std::move(merged.edited), may_recut, options.threads);
+  return encode_edit(tip, std::move(theirs), std::move(merged.edited), recut_rule(edit, options, true),
+                     options.threads);
 }
 
 }  // namespace
@@ -344,7 +352,7 @@ CommitReport commit_edit(const PendingEdit& edit, const CommitOptions& options, 
         [&](const Snapshot::Impl& tip) -> std::optional<EncodedEdit> {
           report.conflicts = common(charts_other_than(edit.parts, tip.pages(), {}), edit.changes.touched);
           auto encoded =
-              report.conflicts.empty() ? encode_on(tip, edit, options.threads) : merge_on(tip, edit, options, report);
+              report.conflicts.empty() ? encode_on(tip, edit, options) : merge_on(tip, edit, options, report);
           if (!encoded) return encoded;
           encoded->merged_version = second_parent;
           report.nothing_changed = encoded->pages.empty() && !second_parent;

@@ -74,13 +74,16 @@ class ThreeWayMerge {
       if (ours_.face_source[f] != kNew) our_face_[ours_.face_source[f]] = f;
   }
 
-  /// What both sides added alike is taken once. Faces that both removed are gone, unless one put others there.
+  /// What both sides added alike is taken once. Faces that both removed are gone, unless one put others there, or has
+  /// new ones that hang together with nothing: these may be the same once more, at another place.
   void find_alike() {
     std::vector<bool> is_new;
     for (const FaceMatch& match : base_face_) is_new.push_back(match.face == kNew);
     alike_ = find_alike_additions(ours_, our_places_, theirs_, their_places_, base_vertex_, is_new);
     std::vector<bool> has_new(base_.points.size(), false);
+    bool loose = false;
     const auto mark = [&](const Triangle& t, const std::vector<std::uint32_t>& base_vertex) {
+      loose = loose || std::ranges::all_of(t, [&](std::uint32_t v) { return base_vertex[v] == kNew; });
       for (const std::uint32_t v : t)
         if (base_vertex[v] != kNew) has_new[base_vertex[v]] = true;
     };
@@ -91,7 +94,7 @@ class ThreeWayMerge {
     for (std::uint32_t f = 0; f < our_face_.size(); ++f)
       if (our_face_[f] == kNew && their_face_[f] == kNew)
         for (const std::uint32_t v : base_.faces[f])
-          if (has_new[v]) conflict_at(v, "both sides changed the faces here");
+          if (loose || has_new[v]) conflict_at(v, "both sides changed the faces here");
     for (const std::uint32_t f : alike_.disputed)
       conflict_between(ours_.mesh.faces[f], "both sides added faces here, and not the same");
   }

@@ -143,15 +143,51 @@ TEST_F(Merge, AVertexThatOneSideMovedAndTheOtherRemovedIsAConflict) {
     Patch *a = nullptr, *b = nullptr;
     EditTransaction mine = begin(4, a), theirs = begin(4, b);
     Patch &moved = remove_first ? *a : *b, &cut = remove_first ? *b : *a;
-    lift(moved, 3, 40);
+    std::size_t n = 0;  // a vertex away from the border
+    const auto away = [&](Patch::Mesh::VertexHandle v) {
+      const auto around = cut.mesh().vv_range(v);
+      return std::all_of(around.begin(), around.end(), [&](auto w) { return is_inner(cut, w); });
+    };
+    while (!away(inner(cut)[n])) ++n;
+    lift(moved, n, 40);
     cut.mesh().request_vertex_status();
     cut.mesh().request_edge_status();
     cut.mesh().request_face_status();
-    cut.mesh().delete_vertex(inner(cut)[3]);
+    cut.mesh().delete_vertex(inner(cut)[n]);
     const VersionId before = theirs.commit(options("theirs")).revision;
     EXPECT_FALSE(mine.commit(options("mine", true)).conflict_places.empty());
     EXPECT_EQ(repository_->resolve("HEAD"), before);
     (void)repository_->revert("HEAD", {}, options("back"));
+  }
+}
+
+TEST_F(Merge, ASmallChartIsJoinedToANeighbourThatNobodyElseHasLocked) {
+  for (const bool locked : {true, false}) {
+    Patch* patch = nullptr;
+    EditTransaction edit = begin(4, patch);
+    auto& mesh = patch->mesh();
+    mesh.request_vertex_status();
+    mesh.request_edge_status();
+    mesh.request_face_status();
+    for (const auto f : mesh.all_faces()) {
+      bool at_border = false;
+      for (auto v = mesh.cfv_iter(f); v.is_valid(); ++v) at_border = at_border || patch->on_outer_border(*v);
+      if (!at_border) mesh.delete_face(f);
+    }
+    LockOptions others;
+    others.owner = "somebody";
+    std::vector<ChartId> charts = repository_->snapshot().find({{WholeMesh{}}, 0});
+    std::erase(charts, ChartId(4));
+    if (locked) (void)repository_->lock(repository_->snapshot(), charts, others);
+    ASSERT_TRUE(edit.commit(options("cut")).conflicts.empty());
+    const std::uint32_t least = repository_->snapshot().info().chart_faces.min;
+    EXPECT_EQ(least < 100, locked) << least;
+    expect_whole();
+    if (!locked) break;
+    (void)repository_->unlock_all("somebody");
+    (void)repository_->revert("HEAD", {}, options("back"));
+    ASSERT_EQ(faces(), faces("1"));
+    ASSERT_EQ(repository_->snapshot().find({{OfCharts{{ChartId(4)}}}, 0}).size(), 1U);
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -54,7 +55,10 @@ struct Model {
 [[nodiscard]] inline Model::Color color_at(const RegionMesh& region, std::uint32_t v) {
   if (region.attributes.empty()) return {};
   const auto first = region.attributes.front().values.begin() + 3 * static_cast<std::ptrdiff_t>(v);
-  return {first, first + 3};
+  Model::Color color{first, first + 3};
+  for (double& value : color)
+    if (std::isnan(value)) value = -1;  // absent; but equal to itself
+  return color;
 }
 
 /// With ids that count from 0.
@@ -253,6 +257,7 @@ class PlainMerge {
         if (p != was && p != mine) contradict(id, "moved twice");
         p = mine;
       }
+      if (ours_.color[o->second].empty()) c.clear();  // made anew in its place
       for (std::size_t k = 0; k < c.size(); ++k) {
         const double before = base_.color[b->second][k], value = ours_.color[o->second][k];
         if (value == before) continue;
