@@ -10,6 +10,8 @@ namespace ramcdb::detail {
 struct ChartDifference {
   std::vector<ChartId> changed;  ///< both have them, in different states
   std::vector<ChartId> added, removed;
+
+  [[nodiscard]] bool empty() const { return changed.empty() && added.empty() && removed.empty(); }
 };
 
 /// Walks both trees of index pages and skips what they share: the cost follows the difference.

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "api/chart_difference.h"
+#include "api/locks.h"
 #include "api/three_way.h"
 #include "ramcdb/error.h"
 
@@ -47,6 +48,16 @@ std::vector<ChartId> charts_other_than(std::span<const RegionPart> parts, const 
   }
   std::sort(others.begin(), others.end());
   return others;
+}
+
+/// The charts that an index holds in the region's state.
+std::vector<ChartId> charts_as_in(std::span<const RegionPart> parts, const PageIndex& there) {
+  std::vector<ChartId> equal;
+  for (const RegionPart& part : parts)
+    for (const ChartId id : part.charts)
+      if (state_in(part.at->pages(), id) == state_in(there, id)) equal.push_back(id);
+  std::sort(equal.begin(), equal.end());
+  return equal;
 }
 
 const Snapshot::Impl& newest(std::span<const RegionPart> parts) {
@@ -112,19 +123,26 @@ void repeat_report(const PendingEdit& edit, VersionId published, CommitReport& r
   report.charts_removed = report.removed.size();
 }
 
+/// Whether a chart may be cut anew because of a small one beside it: those that others have locked stay.
+std::function<bool(ChartId)> recut_rule(const PendingEdit& edit, const CommitOptions& options, bool outside) {
+  return [&edit, &options, outside](ChartId id) {
+    if (std::ranges::binary_search(edit.region.charts, id)) return true;
+    const Snapshot::Impl& base = edit.base();
+    return outside && (options.ignore_locks || !is_locked(*base.store_handle(), base.root().mesh, id, options.author));
+  };
+}
+
 /// The charts that an edit touches, as a tip has them, and the edit of these: all that it holds, as a rule, of the very
 /// tip.
-EncodedEdit encode_on(const Snapshot::Impl& tip, const PendingEdit& edit, unsigned threads) {
-  const auto may_recut = [&](ChartId id) {
-    return edit.may_recut_outside || std::ranges::binary_search(edit.region.charts, id);
-  };
+EncodedEdit encode_on(const Snapshot::Impl& tip, const PendingEdit& edit, const CommitOptions& options) {
+  const auto may_recut = recut_rule(edit, options, edit.may_recut_outside);
   const bool touches_all = std::ranges::equal(edit.changes.touched, edit.region.charts);
   if (touches_all && edit.parts.size() == 1 && edit.parts.front().at->root() == tip.root())
-    return encode_edit(tip, edit.region, edit.edited, may_recut, threads);
+    return encode_edit(tip, edit.region, edit.edited, may_recut, options.threads);
   const RegionPart part{&tip, {edit.changes.touched.begin(), edit.changes.touched.end()}};
-  RegionMesh region = load_region(std::span(&part, 1), threads, nullptr, true);
+  RegionMesh region = load_region(std::span(&part, 1), options.threads, nullptr, true);
   EditedRegion edited = transferred(edit.edited, edit.region, region);
-  return encode_edit(tip, std::move(region), std::move(edited), may_recut, threads);
+  return encode_edit(tip, std::move(region), std::move(edited), may_recut, options.threads);
 }
 
 /// Which charts' layers others changed, of those that an edit changes as well.
@@ -162,7 +180,8 @@ std::optional<EncodedEdit> merge_on(const Snapshot::Impl& tip, const PendingEdit
   const RegionPart tip_part{&tip, {now.begin(), now.end()}};
   const RegionMesh base = load_region(parts, options.threads, nullptr, true);
   RegionMesh theirs = load_region(std::span(&tip_part, 1), options.threads, nullptr, true);
-  MergedEdit merged = merge_edits(tip, base, transferred(edit.edited, edit.region, base), theirs);
+  MergedEdit merged =
+      merge_edits(tip, base, transferred(edit.edited, edit.region, base), theirs, charts_as_in(parts, tip.pages()));
 
   const bool geometry = !edit.changes.moves.empty() || edit.changes.connectivity();
   const bool other_kinds = !(geometry && merged.theirs_moved) && !layers_overlap(edit, tip, report.conflicts);
@@ -173,8 +192,8 @@ std::optional<EncodedEdit> merge_on(const Snapshot::Impl& tip, const PendingEdit
   }
   report.conflicts.clear();
   report.merged = true;
-  const auto may_recut = [&](ChartId) { return true; };
-  return encode_edit(tip, std::move(theirs), std::move(merged.edited), may_recut, options.threads);
+  return encode_edit(tip, std::move(theirs), std::move(merged.edited), recut_rule(edit, options, true),
+                     options.threads);
 }
 
 /// An edit on a tip, merged where others changed the same charts. None, with the conflicts in the report, where that
@@ -184,7 +203,7 @@ std::optional<EncodedEdit> encode_or_merge(const Snapshot::Impl& tip, const Pend
   report.conflict_places.clear();
   report.merged = false;
   report.conflicts = common(charts_other_than(edit.parts, tip.pages(), {}), edit.changes.touched);
-  if (report.conflicts.empty()) return encode_on(tip, edit, options.threads);
+  if (report.conflicts.empty()) return encode_on(tip, edit, options);
   return merge_on(tip, edit, options, report);
 }
 

@@ -27,13 +27,15 @@ class VersionComparison {
                     unsigned threads, ReadCost& cost)
       : from_(from), to_(to) {
     std::vector<ChartId> before = united(charts.changed, charts.removed), after = united(charts.changed, charts.added);
+    std::vector<ChartId> equal;
     if (before.empty()) {  // there is no region of no chart: one that both have stands in
-      before = {from.pages().all_charts().front()};
+      equal = {from.pages().all_charts().front()};
+      before = equal;
       after = united(after, before);
     }
     before_ = load(from, before, threads, cost);
     after_ = load(to, after, threads, cost);
-    edited_ = mesh_as_edit(from, before_, after_);
+    edited_ = mesh_as_edit(from, before_, after_, equal);
     changes_ = differences_of(from, before_, edited_);
     drop_shared_with_outside();
   }

@@ -71,9 +71,14 @@ std::uint64_t changes(const MatchState& state, const VertexPairs& pairs) {
 }
 
 /// An order of faces that fits may be the old one, or fit by chance: then fewer vertices change without it.
-void pair(MatchState& state, std::vector<std::uint32_t> ids) {
+void pair(MatchState& state, std::vector<std::uint32_t> ids, std::span<const std::uint32_t> known) {
   std::vector<OrderedPairs> order;
   if (ids.empty()) order = pairs_by_order(state);
+  for (std::uint32_t w = 0; w < known.size(); ++w) {
+    if (known[w] == kNowhere) continue;
+    state.pairs.set(known[w], w);
+    if (!order.empty() && order.front().pairs.from(w) != known[w] && state.to_rings.degree(w)) order.clear();
+  }
   if (order.empty() || order.front().contradictions) pair_by_geometry(state, std::move(ids));
   if (!order.empty() && changes(state, order.front().pairs) <= changes(state, state.pairs))
     state.pairs = std::move(order.front().pairs);
@@ -87,21 +92,24 @@ std::vector<FaceMatch> faces_of(MatchState& state) {
   return faces;
 }
 
-SurfaceMatch match_as_numbered(const Surface& from, const Surface& to, std::vector<std::uint32_t> ids) {
+SurfaceMatch match_as_numbered(const Surface& from, const Surface& to, std::vector<std::uint32_t> ids,
+                               std::span<const std::uint32_t> known) {
   MatchState state(from, to);
-  pair(state, std::move(ids));
+  pair(state, std::move(ids), known);
   std::vector<FaceMatch> faces = faces_of(state);
   return {std::move(state.pairs), std::move(faces)};
 }
 
 }  // namespace
 
-SurfaceMatch match_surfaces(const Surface& from, const Surface& to, std::vector<std::uint32_t> ids) {
-  if (!is_scattered(to) || is_scattered(from)) return match_as_numbered(from, to, std::move(ids));
+SurfaceMatch match_surfaces(const Surface& from, const Surface& to, std::vector<std::uint32_t> ids,
+                            std::span<const std::uint32_t> known) {
+  if (!is_scattered(to) || is_scattered(from)) return match_as_numbered(from, to, std::move(ids), known);
   const LocalOrder order = in_local_order(to);
-  std::vector<std::uint32_t> ordered_ids;
+  std::vector<std::uint32_t> ordered_ids, ordered_known;
   for (std::size_t w = 0; w < ids.size(); ++w) ordered_ids.push_back(ids[order.vertex[w]]);
-  const SurfaceMatch found = match_as_numbered(from, order.surface(), std::move(ordered_ids));
+  for (std::size_t w = 0; w < known.size(); ++w) ordered_known.push_back(known[order.vertex[w]]);
+  const SurfaceMatch found = match_as_numbered(from, order.surface(), std::move(ordered_ids), ordered_known);
   SurfaceMatch match{VertexPairs(from.points.size(), to.points.size()), std::vector<FaceMatch>(to.face_count())};
   for (std::uint32_t w = 0; w < to.points.size(); ++w)
     if (const std::uint32_t v = found.vertices.from(w); v != kNowhere) match.vertices.set(v, order.vertex[w]);

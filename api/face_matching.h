@@ -20,7 +20,9 @@ struct SurfaceMatch {
 /// lock-step walks from what is known, and by connectivity alone; a face is the same when all its vertices are.
 /// Vertices without faces are left to the caller. The result depends on the arguments only.
 /// \param ids per vertex of `to` the vertex that its id names, kNone without; empty without ids
-[[nodiscard]] SurfaceMatch match_surfaces(const Surface& from, const Surface& to, std::vector<std::uint32_t> ids = {});
+/// \param known per vertex of `to` the vertex that it is for sure, kNone without, none twice; empty without
+[[nodiscard]] SurfaceMatch match_surfaces(const Surface& from, const Surface& to, std::vector<std::uint32_t> ids = {},
+                                          std::span<const std::uint32_t> known = {});
 
 struct Matching {
   std::vector<FaceMatch> matches;  ///< per face of `from`, its face of `to`

@@ -92,6 +92,10 @@ void refuse_locked(db::Store& store, MeshId mesh, std::span<const ChartId> chart
               "ask them, wait, or commit with --ignore-locks");
 }
 
+bool is_locked(db::Store& store, MeshId mesh, ChartId chart, const std::string& owner) {
+  return !store.locks_against(mesh, std::span(&chart, 1), owner, now_us()).empty();
+}
+
 LockReport lock_charts(const std::shared_ptr<db::Store>& store, const Snapshot::Impl& at,
                        const std::vector<ChartId>& charts, const LockOptions& options) {
   if (options.owner.empty()) throw Error(Errc::invalid_argument, "a lock needs an owner", {}, "name one with --owner");

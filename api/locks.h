@@ -16,6 +16,9 @@ namespace ramcdb::detail {
 /// (ascending). A commit asks this while it holds the writer lock, with all charts that it changes.
 void refuse_locked(db::Store& store, MeshId mesh, std::span<const ChartId> charts, const std::string& owner);
 
+/// Whether others than `owner` have locked a chart.
+[[nodiscard]] bool is_locked(db::Store& store, MeshId mesh, ChartId chart, const std::string& owner);
+
 /// Throws conflict where others have locked charts, unless `options.steal`.
 [[nodiscard]] LockReport lock_charts(const std::shared_ptr<db::Store>& store, const Snapshot::Impl& at,
                                      const std::vector<ChartId>& charts, const LockOptions& options);

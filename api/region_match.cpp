@@ -111,8 +111,9 @@ Found match_joined(const Surface& region, const WeldedSurface& joined, std::span
   return found;
 }
 
-Found match_kept_apart(const Surface& region, const Surface& other, std::span<const std::uint32_t> named) {
-  SurfaceMatch match = match_surfaces(region, other, {named.begin(), named.end()});
+Found match_kept_apart(const Surface& region, const Surface& other, std::span<const std::uint32_t> named,
+                       std::span<const std::uint32_t> known) {
+  SurfaceMatch match = match_surfaces(region, other, {named.begin(), named.end()}, known);
   Found found{std::vector<std::uint32_t>(other.points.size()), std::vector<std::uint32_t>(other.points.size()),
               std::move(match.faces)};
   for (std::uint32_t w = 0; w < other.points.size(); ++w) {
@@ -124,7 +125,7 @@ Found match_kept_apart(const Surface& region, const Surface& other, std::span<co
 
 /// A file that splits vertices but kept their ids tells those apart that lie on one point.
 Found match(const Surface& region, const OtherMesh& other, std::span<const std::uint32_t> named) {
-  if (!other.splits_vertices) return match_kept_apart(region, other.surface(), named);
+  if (!other.splits_vertices) return match_kept_apart(region, other.surface(), named, other.known);
   const auto known =
       static_cast<std::size_t>(named.size()) - static_cast<std::size_t>(std::ranges::count(named, kNowhere));
   if (known * 2 > other.points.size()) return match_joined(region, weld_by_place(other.surface(), named), named);
@@ -249,6 +250,36 @@ std::uint64_t surviving(const RegionMatch& match) {
 
 }  // namespace
 
+namespace {
+
+/// Where the faces of a chart of a region are.
+std::span<const Triangle> faces_of(const RegionMesh& region, ChartId id) {
+  const auto chart = static_cast<std::uint32_t>(std::ranges::lower_bound(region.charts, id) - region.charts.begin());
+  const auto found = std::ranges::equal_range(region.chart_of_face, chart);
+  const auto first = static_cast<std::size_t>(found.begin() - region.chart_of_face.begin());
+  return std::span(region.faces).subspan(first, found.size());
+}
+
+/// Per vertex of a mesh the region's that it is, by charts that both hold in the same state.
+std::vector<std::uint32_t> vertices_of_charts(const RegionMesh& region, const RegionMesh& mesh,
+                                              std::span<const ChartId> charts) {
+  std::vector<std::uint32_t> known(charts.empty() ? 0 : mesh.points.size(), kNowhere);
+  std::vector<bool> taken(region.points.size(), false);
+  const auto pair = [&](std::uint32_t v, std::uint32_t w) {
+    if (known[w] != kNowhere || taken[v]) return;
+    known[w] = v;
+    taken[v] = true;
+  };
+  for (const ChartId id : charts) {
+    const auto mine = faces_of(region, id), theirs = faces_of(mesh, id);
+    for (std::size_t f = 0; f < theirs.size(); ++f)
+      for (std::size_t i = 0; i < 3; ++i) pair(mine[f][i], theirs[f][i]);
+  }
+  return known;
+}
+
+}  // namespace
+
 bool RegionMatch::same_connectivity() const {
   return !faces_gone && !vertices_gone && surviving(*this) == faces.size() &&
          std::ranges::none_of(vertices, [](const Vertex& v) { return v.region == kNowhere; });
@@ -280,12 +311,14 @@ MatchedRegion match_region(const RegionMesh& region, const OtherMesh& other) {
   return found * 2 >= count && found > surviving(polygons.match) ? std::move(triangles) : std::move(polygons);
 }
 
-RegionMatch match_region(const RegionMesh& region, const RegionMesh& mesh, const Lattice& lattice) {
+RegionMatch match_region(const RegionMesh& region, const RegionMesh& mesh, const Lattice& lattice,
+                         std::span<const ChartId> equal) {
   const std::vector<Point> places = positions_in(mesh, lattice);
   const TriangleCorners triangles(mesh.faces);
   const Surface surface = triangles.over(mesh.points);
+  const std::vector<std::uint32_t> known = vertices_of_charts(region, mesh, equal);
   return match_region(region, RegionFaces(region, true),
-                      {places, surface.points, surface.corners, surface.firsts, {}, false});
+                      {places, surface.points, surface.corners, surface.firsts, {}, false, known});
 }
 
 }  // namespace ramcdb::detail

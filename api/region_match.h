@@ -20,6 +20,8 @@ struct OtherMesh {
   /// The file has to write a vertex several times (STL; glTF at seams): vertices on one lattice point that come from
   /// one vertex of the region, or are all new, are one.
   bool splits_vertices = false;
+  /// Per vertex the region's that it is for sure, or RegionMatch::kNone, none twice; empty where nothing is.
+  std::span<const std::uint32_t> known = {};
 
   [[nodiscard]] Surface surface() const { return {points, corners, firsts}; }
 };
@@ -58,7 +60,9 @@ struct MatchedRegion {
 /// most of its faces, and more than otherwise, are found that way. `region` must outlive the result.
 [[nodiscard]] MatchedRegion match_region(const RegionMesh& region, const OtherMesh& other);
 
-/// Finds a region in a mesh of the same lattice, such as another version of it, triangle by triangle.
-[[nodiscard]] RegionMatch match_region(const RegionMesh& region, const RegionMesh& mesh, const Lattice& lattice);
+/// Finds a region in what other charts of the same mesh hold, such as another version of it, triangle by triangle.
+/// \param equal charts that both hold in the same state, decoded from the same blobs: these tell who their vertices are
+[[nodiscard]] RegionMatch match_region(const RegionMesh& region, const RegionMesh& mesh, const Lattice& lattice,
+                                       std::span<const ChartId> equal);
 
 }  // namespace ramcdb::detail

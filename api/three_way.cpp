@@ -4,6 +4,7 @@
 #include <bit>
 #include <set>
 
+#include "api/alike_additions.h"
 #include "api/edited_region_builder.h"
 #include "api/region_match.h"
 #include "api/region_mesh.h"
@@ -22,10 +23,12 @@ constexpr const char* kValueGone = "a vertex or face of which one side changed a
 
 class ThreeWayMerge {
  public:
-  ThreeWayMerge(const Snapshot::Impl& tip, const RegionMesh& base, const EditedRegion& ours, const RegionMesh& theirs)
+  ThreeWayMerge(const Snapshot::Impl& tip, const RegionMesh& base, const EditedRegion& ours, const RegionMesh& theirs,
+                std::span<const ChartId> equal)
       : base_(base),
         ours_(ours),
         theirs_(theirs),
+        equal_(equal),
         lattice_(tip.record().lattice),
         base_places_(positions_in(base, lattice_)),
         our_places_(positions_in(ours.mesh, lattice_)),
@@ -36,6 +39,7 @@ class ThreeWayMerge {
   MergedEdit run() {
     match_theirs();
     index_ours();
+    find_alike();
     mark_new_edges();
     add_vertices();
     expect_faces_of_values();
@@ -49,7 +53,7 @@ class ThreeWayMerge {
 
  private:
   void match_theirs() {
-    const RegionMatch match = match_region(base_, theirs_, lattice_);
+    const RegionMatch match = match_region(base_, theirs_, lattice_, equal_);
     base_vertex_.assign(theirs_.points.size(), kNew);
     their_vertex_.assign(base_.points.size(), kNew);
     for (std::uint32_t v = 0; v < base_vertex_.size(); ++v)
@@ -72,9 +76,31 @@ class ThreeWayMerge {
     our_face_.assign(base_.faces.size(), kNew);
     for (std::uint32_t f = 0; f < ours_.face_source.size(); ++f)
       if (ours_.face_source[f] != kNew) our_face_[ours_.face_source[f]] = f;
+  }
+
+  /// What both sides added alike is taken once. Faces that both removed are gone, unless one put others there, or has
+  /// new ones that hang together with nothing: these may be the same once more, at another place.
+  void find_alike() {
+    std::vector<bool> is_new;
+    for (const FaceMatch& match : base_face_) is_new.push_back(match.face == kNew);
+    alike_ = find_alike_additions(ours_, our_places_, theirs_, their_places_, base_vertex_, is_new);
+    std::vector<bool> has_new(base_.points.size(), false);
+    bool loose = false;
+    const auto mark = [&](const Triangle& t, const std::vector<std::uint32_t>& base_vertex) {
+      loose = loose || std::ranges::all_of(t, [&](std::uint32_t v) { return base_vertex[v] == kNew; });
+      for (const std::uint32_t v : t)
+        if (base_vertex[v] != kNew) has_new[base_vertex[v]] = true;
+    };
+    for (std::uint32_t f = 0; f < is_new.size(); ++f)
+      if (is_new[f] && !alike_.faces_of_theirs[f]) mark(theirs_.faces[f], base_vertex_);
+    for (std::uint32_t f = 0; f < ours_.face_source.size(); ++f)
+      if (ours_.face_source[f] == kNew && !alike_.faces[f]) mark(ours_.mesh.faces[f], ours_.vertex_source);
     for (std::uint32_t f = 0; f < our_face_.size(); ++f)
       if (our_face_[f] == kNew && their_face_[f] == kNew)
-        conflict_at(base_.faces[f][0], "both sides changed the faces here");
+        for (const std::uint32_t v : base_.faces[f])
+          if (loose || has_new[v]) conflict_at(v, "both sides changed the faces here");
+    for (const std::uint32_t f : alike_.disputed)
+      conflict_between(ours_.mesh.faces[f], "both sides added faces here, and not the same");
   }
 
   /// Edges of the base at which faces of theirs are new.
@@ -94,6 +120,15 @@ class ThreeWayMerge {
     constexpr std::size_t kMost = 1000;
     if (merged_.conflicts.size() < kMost && told_.insert(base_vertex).second)
       merged_.conflicts.push_back({{}, chart_of(base_vertex), base_places_[base_vertex], what});
+  }
+
+  /// At a new face of ours, wherever the base is next to it.
+  void conflict_between(const Triangle& face, const char* what) {
+    for (const std::uint32_t v : face)
+      if (ours_.vertex_source[v] != kNew) return conflict_at(ours_.vertex_source[v], what);
+    constexpr std::size_t kMost = 1000;
+    if (merged_.conflicts.size() < kMost)
+      merged_.conflicts.push_back({{}, base_.charts.front(), our_places_[face[0]], what});
   }
 
   [[nodiscard]] ChartId chart_of(std::uint32_t base_vertex) const {
@@ -131,6 +166,10 @@ class ThreeWayMerge {
     our_new_vertex_.assign(ours_.vertex_source.size(), kNew);
     for (std::uint32_t v = 0; v < ours_.vertex_source.size(); ++v)
       if (ours_.vertex_source[v] == kNew) {
+        if (alike_.vertex[v] != kNew) {
+          our_new_vertex_[v] = vertex_[alike_.vertex[v]];
+          continue;
+        }
         our_new_vertex_[v] = builder_.add_vertex(kNew, our_places_[v]);
         new_vertices_.push_back({our_new_vertex_[v], v});
       }
@@ -234,7 +273,7 @@ class ThreeWayMerge {
   void add_new_faces() {
     std::vector<std::uint32_t> added(ours_.face_source.size(), kNew);
     for (std::uint32_t f = 0; f < ours_.face_source.size(); ++f) {
-      if (ours_.face_source[f] != kNew) continue;
+      if (ours_.face_source[f] != kNew || alike_.faces[f]) continue;
       const Triangle& t = ours_.mesh.faces[f];
       for (std::size_t i = 0; i < 3; ++i) {
         const std::uint32_t a = ours_.vertex_source[t[i]], b = ours_.vertex_source[t[(i + 1) % 3]];
@@ -275,11 +314,13 @@ class ThreeWayMerge {
   const RegionMesh& base_;
   const EditedRegion& ours_;
   const RegionMesh& theirs_;
+  std::span<const ChartId> equal_;
   const Lattice& lattice_;
   std::vector<Point> base_places_, our_places_, their_places_;
   std::vector<Attribute> values_;  ///< in the numbering of theirs
   EditedRegionBuilder builder_;
   MergedEdit merged_;
+  AlikeAdditions alike_;
   std::set<std::uint32_t> told_;
   std::set<std::pair<std::uint32_t, std::uint32_t>> their_new_edges_;
   std::vector<std::uint32_t> base_vertex_;                                         ///< theirs -> base
@@ -293,8 +334,8 @@ class ThreeWayMerge {
 }  // namespace
 
 MergedEdit merge_edits(const Snapshot::Impl& tip, const RegionMesh& base, const EditedRegion& ours,
-                       const RegionMesh& theirs) {
-  return ThreeWayMerge(tip, base, ours, theirs).run();
+                       const RegionMesh& theirs, std::span<const ChartId> equal) {
+  return ThreeWayMerge(tip, base, ours, theirs, equal).run();
 }
 
 }  // namespace ramcdb::detail

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
+#include <set>
 
 #include "api/chart_difference.h"
 #include "api/edited_region_builder.h"
 #include "api/limited_edit.h"
 #include "api/region_match.h"
 #include "api/region_mesh.h"
+#include "api/region_query.h"
 #include "api/version_figures.h"
 #include "ramcdb/error.h"
 
@@ -19,12 +22,12 @@ namespace {
 /// A mesh as an edit of another one.
 class MeshAsEdit {
  public:
-  MeshAsEdit(const Snapshot::Impl& at, const RegionMesh& region, const RegionMesh& mesh)
+  MeshAsEdit(const Snapshot::Impl& at, const RegionMesh& region, const RegionMesh& mesh, std::span<const ChartId> equal)
       : at_(at),
         region_(region),
         mesh_(mesh),
         values_(region.attributes),
-        match_(match_region(region, mesh, at.record().lattice)),
+        match_(match_region(region, mesh, at.record().lattice, equal)),
         builder_(at, region) {}
 
   EditedRegion run() {
@@ -94,6 +97,15 @@ class MeshAsEdit {
   EditedRegionBuilder builder_;
 };
 
+/// Charts of a version, and those that share a wire or a corner with them.
+std::set<ChartId> with_neighbours(const Snapshot::Impl& at, std::vector<ChartId> charts,
+                                  const std::vector<ChartId>& more) {
+  charts.insert(charts.end(), more.begin(), more.end());
+  if (charts.empty()) return {};
+  const std::vector<ChartId> grown = find_charts(at, {{OfCharts{std::move(charts)}}, 1}, nullptr);
+  return {grown.begin(), grown.end()};
+}
+
 const db::MeshRoot* root_with_id(const std::vector<db::MeshRoot>& roots, MeshId mesh) {
   const auto it = std::ranges::find(roots, mesh, &db::MeshRoot::mesh);
   return it == roots.end() ? nullptr : &*it;
@@ -161,8 +173,9 @@ class EditsBetween {
 
 }  // namespace
 
-EditedRegion mesh_as_edit(const Snapshot::Impl& at, const RegionMesh& region, const RegionMesh& mesh) {
-  return MeshAsEdit(at, region, mesh).run();
+EditedRegion mesh_as_edit(const Snapshot::Impl& at, const RegionMesh& region, const RegionMesh& mesh,
+                          std::span<const ChartId> equal) {
+  return MeshAsEdit(at, region, mesh, equal).run();
 }
 
 PendingEdit edit_between(const Snapshot::Impl& from, const Snapshot::Impl& to, unsigned threads,
@@ -171,21 +184,26 @@ PendingEdit edit_between(const Snapshot::Impl& from, const Snapshot::Impl& to, u
     throw Error(Errc::invalid_argument, "these versions do not hold the same mesh",
                 fmt::format("{} and {}", from.root().name, to.root().name), "name one mesh with --mesh");
   const ChartDifference difference = chart_difference(from.pages(), to.pages());
-  std::vector<ChartId> before = difference.changed, after = difference.changed;
-  before.insert(before.end(), difference.removed.begin(), difference.removed.end());
-  after.insert(after.end(), difference.added.begin(), difference.added.end());
-  std::ranges::sort(before);
-  std::ranges::sort(after);
-  if (before.empty() && !after.empty()) before.push_back(from.pages().all_charts().front());
-  if (!after.empty() && before.size() == 1 && difference.changed.empty() && difference.removed.empty())
-    after.insert(std::ranges::upper_bound(after, before.front()), before.front());
   PendingEdit edit;
   edit.may_recut_outside = true;
+  if (difference.empty()) return edit;
+  const std::set<ChartId> removed(difference.removed.begin(), difference.removed.end()),
+      added(difference.added.begin(), difference.added.end());
+  const std::set<ChartId> near_from = with_neighbours(from, difference.changed, difference.removed),
+                          near_to = with_neighbours(to, difference.changed, difference.added);
+  std::vector<ChartId> before, after, equal;
+  std::ranges::set_union(near_from, near_to, std::back_inserter(before));
+  std::erase_if(before, [&](ChartId id) { return added.contains(id); });
+  if (before.empty()) before.push_back(from.pages().all_charts().front());
+  std::ranges::set_difference(before, removed, std::back_inserter(after));
+  std::ranges::set_difference(after, difference.changed, std::back_inserter(equal));
+  after.insert(after.end(), added.begin(), added.end());
+  std::ranges::sort(after);
   edit.parts = {{&from, before}};
   const RegionPart part{&to, after};
   edit.region = load_region(edit.parts, threads, nullptr, true);
   const RegionMesh mesh = load_region(std::span(&part, 1), threads, nullptr, true);
-  edit.edited = mesh_as_edit(from, edit.region, mesh);
+  edit.edited = mesh_as_edit(from, edit.region, mesh, equal);
   if (within) edit.edited = limited(from, edit.region, edit.edited, mesh, limits_of(*within, from, to));
   edit.changes = changes_of(from, edit.region, edit.edited);
   return edit;

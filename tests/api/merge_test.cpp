@@ -34,14 +34,14 @@ void lift(Patch& patch, std::size_t n, int steps) {
   patch.mesh().point(inner(patch)[n])[2] += steps * patch.base().lattice().step;
 }
 
-/// Splits the n-th face without a border vertex in three.
-void split_face(Patch& patch, std::size_t n) {
+/// Splits the n-th face without a border vertex in three, by a point some steps above its middle.
+void split_face(Patch& patch, std::size_t n, int steps = 0) {
   auto& mesh = patch.mesh();
   for (const auto f : mesh.all_faces()) {
     bool inside = true;
     for (auto v = mesh.cfv_iter(f); v.is_valid(); ++v) inside = inside && is_inner(patch, *v);
     if (!inside || n-- > 0) continue;
-    mesh.split(f, mesh.calc_face_centroid(f));
+    mesh.split(f, mesh.calc_face_centroid(f) + Patch::Mesh::Point(0, 0, steps * patch.base().lattice().step));
     return;
   }
   FAIL() << "the chart has too few faces inside";
@@ -118,8 +118,7 @@ TEST_F(Merge, TheSameFacesChangedTwiceAreAConflict) {
   Patch *a = nullptr, *b = nullptr;
   EditTransaction mine = begin(4, a), theirs = begin(4, b);
   split_face(*a, 2);
-  split_face(*b, 2);
-  lift(*b, 0, 5);
+  split_face(*b, 2, 5);
   (void)theirs.commit(options("theirs"));
   const CommitReport report = mine.commit(options("mine", true));
   EXPECT_FALSE(report.conflict_places.empty());
@@ -191,6 +190,92 @@ TEST_F(MergeOfValues, AMoveOfAVertexThatIsRemovedIsAConflict) {
         if (patch.mesh().property(patch.region_property(), vertex) == v)
           patch.mesh().point(vertex)[2] += 50 * patch.base().lattice().step;
     });
+}
+
+TEST_F(Merge, TheSameChangeOnBothSidesIsTakenOnce) {
+  Patch *a = nullptr, *b = nullptr;
+  EditTransaction mine = begin(4, a), theirs = begin(4, b);
+  split_face(*a, 2);
+  split_face(*b, 2);
+  lift(*b, 0, 5);
+  (void)theirs.commit(options("theirs"));
+  const FaceSet before = faces();
+  EXPECT_TRUE(mine.commit(options("mine", true)).nothing_changed);
+  EXPECT_EQ(faces(), before);
+  expect_whole();
+}
+
+TEST_F(Merge, AVertexThatOneSideMovedAndTheOtherRemovedIsAConflict) {
+  for (const bool remove_first : {false, true}) {
+    Patch *a = nullptr, *b = nullptr;
+    EditTransaction mine = begin(4, a), theirs = begin(4, b);
+    Patch &moved = remove_first ? *a : *b, &cut = remove_first ? *b : *a;
+    std::size_t n = 0;  // a vertex away from the border
+    const auto away = [&](Patch::Mesh::VertexHandle v) {
+      const auto around = cut.mesh().vv_range(v);
+      return std::all_of(around.begin(), around.end(), [&](auto w) { return is_inner(cut, w); });
+    };
+    while (!away(inner(cut)[n])) ++n;
+    lift(moved, n, 40);
+    cut.mesh().request_vertex_status();
+    cut.mesh().request_edge_status();
+    cut.mesh().request_face_status();
+    cut.mesh().delete_vertex(inner(cut)[n]);
+    const VersionId before = theirs.commit(options("theirs")).revision;
+    EXPECT_FALSE(mine.commit(options("mine", true)).conflict_places.empty());
+    EXPECT_EQ(repository_->resolve("HEAD"), before);
+    (void)repository_->revert("HEAD", {}, options("back"));
+  }
+}
+
+TEST_F(Merge, ASmallChartIsJoinedToANeighbourThatNobodyElseHasLocked) {
+  for (const bool locked : {true, false}) {
+    Patch* patch = nullptr;
+    EditTransaction edit = begin(4, patch);
+    auto& mesh = patch->mesh();
+    mesh.request_vertex_status();
+    mesh.request_edge_status();
+    mesh.request_face_status();
+    for (const auto f : mesh.all_faces()) {
+      bool at_border = false;
+      for (auto v = mesh.cfv_iter(f); v.is_valid(); ++v) at_border = at_border || patch->on_outer_border(*v);
+      if (!at_border) mesh.delete_face(f);
+    }
+    LockOptions others;
+    others.owner = "somebody";
+    std::vector<ChartId> charts = repository_->snapshot().find({{WholeMesh{}}, 0});
+    std::erase(charts, ChartId(4));
+    if (locked) (void)repository_->lock(repository_->snapshot(), charts, others);
+    ASSERT_TRUE(edit.commit(options("cut")).conflicts.empty());
+    const std::uint32_t least = repository_->snapshot().info().chart_faces.min;
+    EXPECT_EQ(least < 100, locked) << least;
+    expect_whole();
+    if (!locked) break;
+    (void)repository_->unlock_all("somebody");
+    (void)repository_->revert("HEAD", {}, options("back"));
+    ASSERT_EQ(faces(), faces("1"));
+    ASSERT_EQ(repository_->snapshot().find({{OfCharts{{ChartId(4)}}}, 0}).size(), 1U);
+  }
+}
+
+TEST_F(Merge, AChartThatComesBackIsJoinedToItsNeighbours) {
+  Patch* patch = nullptr;
+  EditTransaction edit = repository_->begin_edit();
+  patch = &edit.checkout({{OfCharts{{ChartId(4)}}}, 1});
+  auto& mesh = patch->mesh();
+  mesh.request_vertex_status();
+  mesh.request_edge_status();
+  mesh.request_face_status();
+  for (const auto f : mesh.all_faces())
+    if (mesh.property(patch->chart_property(), f) == 4) mesh.delete_face(f);
+  const MeshInfo before = repository_->snapshot().info();
+  EXPECT_EQ(edit.commit(options("cut")).charts_removed, 1U);
+  EXPECT_TRUE(repository_->revert("HEAD", {}, options("back")).conflicts.empty());
+  const MeshInfo after = repository_->snapshot().info();
+  EXPECT_EQ(after.vertices, before.vertices);
+  EXPECT_EQ(after.boundary_loops, before.boundary_loops);
+  EXPECT_EQ(faces(), faces("1"));
+  expect_whole();
 }
 
 TEST_F(Merge, BranchesOfDifferentChartsBecomeOne) {

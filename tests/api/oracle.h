@@ -7,99 +7,88 @@
 
 #include "api/page_index.h"
 #include "api/snapshot_impl.h"
-#include "api/topology.h"
 #include "ramcdb/edit_transaction.h"
+#include "tests/api/model.h"
 #include "tests/api/sketch.h"
 #include "tests/api/temp_repository.h"
 
 namespace ramcdb::test {
 
-/// A plain mesh: what a version ought to hold. Vertices without a face are isolated ones.
-struct Model {
-  std::vector<LatticePoint> points;
-  std::vector<std::vector<double>> color;  ///< per vertex; empty where it is not known
-  std::vector<Triangle> faces;
-
-  [[nodiscard]] detail::Topology topology() const {
-    chartify::IndexedMesh mesh;
-    mesh.positions = points;
-    mesh.faces = faces;
-    return detail::analyze(mesh);
-  }
-  [[nodiscard]] std::vector<LatticePoint> sorted_points() const {
-    std::vector<LatticePoint> all = points;
-    std::sort(all.begin(), all.end());
-    return all;
-  }
-  /// A place and a colour for every vertex that has a known one.
-  [[nodiscard]] std::vector<std::pair<LatticePoint, std::vector<double>>> known_colors() const {
-    std::vector<std::pair<LatticePoint, std::vector<double>>> known;
-    for (std::size_t v = 0; v < points.size(); ++v)
-      if (!color[v].empty()) known.emplace_back(points[v], color[v]);
-    std::sort(known.begin(), known.end());
-    return known;
-  }
+/// A sketch of a region of a version, as the vertices of that version's model.
+struct Placed {
+  const Sketch* sketch;
+  std::vector<Model::Color> colors;  ///< per vertex of the sketch; empty where not known
+  std::vector<std::uint64_t> ids;    ///< per vertex of the sketch
 };
 
-[[nodiscard]] inline std::vector<double> color_at(const RegionMesh& region, std::uint32_t v) {
-  if (region.attributes.empty()) return {};
-  const auto first = region.attributes.front().values.begin() + 3 * static_cast<std::ptrdiff_t>(v);
-  return {first, first + 3};
-}
-
-[[nodiscard]] inline Model model_of(const RegionMesh& region) {
-  Model model{region.points, {}, region.faces};
-  for (std::uint32_t v = 0; v < region.points.size(); ++v) model.color.push_back(color_at(region, v));
-  return model;
-}
-
-/// What a version becomes by sketches of regions that have no chart in common.
-/// \param colors per sketch and vertex of it; empty where not known
-[[nodiscard]] inline Model with_sketches(const RegionMesh& whole, const std::vector<const Sketch*>& sketches,
-                                         const std::vector<std::vector<std::vector<double>>>& colors) {
-  Model all = model_of(whole), out;
+/// Tells which vertices of a version a sketch has. New ones get new ids, unless they lie where one that goes lay: what
+/// a program makes anew at the same place cannot be told from what was there. \param whole the version that `model` is
+/// of, in the same order
+[[nodiscard]] inline Placed placed(const Sketch& sketch, std::vector<Model::Color> colors, const RegionMesh& whole,
+                                   const Model& model, std::uint64_t& next_id) {
   std::map<VertexKey, std::uint32_t> vertex_of;
   for (std::uint32_t v = 0; v < whole.keys.size(); ++v) vertex_of.emplace(whole.keys[v], v);
-  std::set<ChartId> edited;
-  std::vector<Triangle> faces;
-  std::vector<bool> alive(whole.points.size(), false);
-  for (std::size_t s = 0; s < sketches.size(); ++s) {
-    const Sketch& sketch = *sketches[s];
-    const RegionMesh& region = sketch.region();
-    edited.insert(region.charts.begin(), region.charts.end());
-    std::vector<std::uint32_t> number;
-    for (std::uint32_t v = 0; v < sketch.points.size(); ++v) {
-      if (sketch.vertex_was[v] == Sketch::kNew) {
-        number.push_back(static_cast<std::uint32_t>(all.points.size()));
-        all.points.push_back(sketch.points[v]);
-        all.color.push_back(colors[s][v]);
-        alive.push_back(true);
-        continue;
-      }
-      number.push_back(vertex_of.at(region.keys[sketch.vertex_was[v]]));
-      if (sketch.points[v] != region.points[sketch.vertex_was[v]]) all.points[number.back()] = sketch.points[v];
-      if (colors[s][v] != color_at(region, sketch.vertex_was[v])) all.color[number.back()] = colors[s][v];
-      alive[number.back()] = true;
+  const RegionMesh& region = sketch.region();
+  const auto id_of = [&](std::uint32_t v) { return model.ids[vertex_of.at(region.keys[v])]; };
+  std::vector<bool> stays(region.points.size(), false), outside(whole.points.size(), false);
+  for (const std::uint32_t was : sketch.vertex_was)
+    if (was != Sketch::kNew) stays[was] = true;
+  for (std::uint32_t f = 0; f < whole.faces.size(); ++f)
+    if (!std::ranges::binary_search(region.charts, whole.charts[whole.chart_of_face[f]]))
+      for (const std::uint32_t v : whole.faces[f]) outside[v] = true;
+  std::multimap<LatticePoint, std::uint64_t> gone;
+  for (std::uint32_t v = 0; v < stays.size(); ++v)
+    if (!stays[v] && !outside[vertex_of.at(region.keys[v])]) gone.emplace(region.points[v], id_of(v));
+  Placed out{&sketch, std::move(colors), {}};
+  for (std::uint32_t v = 0; v < sketch.points.size(); ++v) {
+    const auto same = gone.find(sketch.points[v]);
+    if (sketch.vertex_was[v] != Sketch::kNew) {
+      out.ids.push_back(id_of(sketch.vertex_was[v]));
+    } else if (same != gone.end()) {
+      out.ids.push_back(same->second);
+      gone.erase(same);
+    } else {
+      out.ids.push_back(next_id++);
     }
-    for (const Triangle& t : sketch.faces) faces.push_back({number[t[0]], number[t[1]], number[t[2]]});
   }
-  std::vector<bool> used(whole.points.size(), false);
+  return out;
+}
+
+/// What a version becomes by a sketch of some of its charts.
+[[nodiscard]] inline Model with_sketch(const RegionMesh& whole, const Model& model, const Placed& placed) {
+  const Sketch& sketch = *placed.sketch;
+  const RegionMesh& region = sketch.region();
+  const std::set<ChartId> edited(region.charts.begin(), region.charts.end());
+  const auto in_model = model.vertex_of_id();
+  std::map<std::uint64_t, std::uint32_t> in_sketch;
+  for (std::uint32_t v = 0; v < placed.ids.size(); ++v) in_sketch.emplace(placed.ids[v], v);
+  std::vector<bool> used(whole.points.size(), false), used_outside(whole.points.size(), false);
+  std::vector<std::array<std::uint64_t, 3>> faces;
   for (std::uint32_t f = 0; f < whole.faces.size(); ++f) {
-    for (const std::uint32_t v : whole.faces[f]) used[v] = true;
-    if (edited.contains(whole.charts[whole.chart_of_face[f]])) continue;
-    faces.push_back(whole.faces[f]);
-    for (const std::uint32_t v : whole.faces[f]) alive[v] = true;
+    const bool outside = !edited.contains(whole.charts[whole.chart_of_face[f]]);
+    for (const std::uint32_t v : whole.faces[f]) used[v] = true, used_outside[v] = used_outside[v] || outside;
+    const Triangle& t = whole.faces[f];
+    if (outside) faces.push_back({model.ids[t[0]], model.ids[t[1]], model.ids[t[2]]});
   }
-  for (std::uint32_t v = 0; v < whole.points.size(); ++v)
-    if (!used[v] && !edited.contains(ChartId(whole.keys[v].id))) alive[v] = true;
-  std::vector<std::uint32_t> to(all.points.size(), Sketch::kNew);
-  for (std::uint32_t v = 0; v < all.points.size(); ++v) {
-    if (!alive[v]) continue;
-    to[v] = static_cast<std::uint32_t>(out.points.size());
-    out.points.push_back(all.points[v]);
-    out.color.push_back(all.color[v]);
+  for (const Triangle& t : sketch.faces) faces.push_back({placed.ids[t[0]], placed.ids[t[1]], placed.ids[t[2]]});
+
+  Model out;
+  for (std::uint32_t v = 0; v < model.ids.size(); ++v) {
+    const auto mine = in_sketch.find(model.ids[v]);
+    const bool isolated_outside = !used[v] && !edited.contains(ChartId(whole.keys[v].id));
+    if (mine == in_sketch.end() && !used_outside[v] && !isolated_outside) continue;
+    LatticePoint p = model.points[v];
+    Model::Color color = model.color[v];
+    if (mine != in_sketch.end()) {
+      p = sketch.points[mine->second];
+      color = placed.colors[mine->second];
+    }
+    out.add_vertex(model.ids[v], p, std::move(color));
   }
-  for (const Triangle& t : faces) out.faces.push_back({to[t[0]], to[t[1]], to[t[2]]});
+  for (std::uint32_t v = 0; v < placed.ids.size(); ++v)
+    if (!in_model.contains(placed.ids[v])) out.add_vertex(placed.ids[v], sketch.points[v], placed.colors[v]);
+  const auto at = out.vertex_of_id();
+  for (const auto& face : faces) out.faces.push_back({at.at(face[0]), at.at(face[1]), at.at(face[2])});
   return out;
 }
 

@@ -1,0 +1,133 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "tests/api/model.h"
+
+namespace ramcdb::test {
+
+using ChartsOfVertices = std::map<std::uint64_t, std::set<ChartId>>;
+
+/// The charts of each vertex of a version, by its id.
+[[nodiscard]] inline ChartsOfVertices charts_of_vertices(const RegionMesh& whole, const Model& model) {
+  ChartsOfVertices charts;
+  for (std::uint32_t f = 0; f < whole.faces.size(); ++f)
+    for (const std::uint32_t v : whole.faces[f]) charts[model.ids[v]].insert(whole.charts[whole.chart_of_face[f]]);
+  for (std::uint32_t v = 0; v < whole.keys.size(); ++v)
+    if (whole.keys[v].where == VertexKey::Where::chart) charts[model.ids[v]].insert(ChartId(whole.keys[v].id));
+  return charts;
+}
+
+/// Two edits of one version.
+class ThreeWay {
+ public:
+  ThreeWay(const Model& base, const Model& ours, const Model& theirs)
+      : base_(base), ours_(ours), theirs_(theirs), touched_(touched(base, ours)), by_theirs_(touched(base, theirs)) {}
+
+  /// Neither changed anything at a vertex at which the other did.
+  [[nodiscard]] bool disjoint() const { return !common(touched_, by_theirs_); }
+  /// Nor in a chart in which the other did. New components go to any chart of their region.
+  [[nodiscard]] bool apart(const ChartsOfVertices& charts) const {
+    return !adds_components(ours_) && !adds_components(theirs_) &&
+           !common(charts_of(touched_, charts), charts_of(by_theirs_, charts));
+  }
+  [[nodiscard]] std::optional<Model> merged() const { return PlainMerge(base_, ours_, theirs_).run(); }
+  [[nodiscard]] std::string contradiction() const {
+    PlainMerge merge(base_, ours_, theirs_);
+    (void)merge.run();
+    return merge.contradiction();
+  }
+
+ private:
+  template <class T>
+  static bool common(const std::set<T>& a, const std::set<T>& b) {
+    return std::ranges::any_of(a, [&](const T& x) { return b.contains(x); });
+  }
+  /// Whether there are new vertices that have nothing to do with old ones, as far as a look at single faces tells.
+  [[nodiscard]] bool adds_components(const Model& side) const {
+    const auto known = base_.vertex_of_id();
+    const auto is_new = [&](std::uint32_t v) { return !known.contains(side.ids[v]); };
+    std::vector<bool> in_face(side.ids.size(), false);
+    for (const Triangle& t : side.faces) {
+      for (const std::uint32_t v : t) in_face[v] = true;
+      if (std::ranges::all_of(t, is_new)) return true;
+    }
+    for (std::uint32_t v = 0; v < side.ids.size(); ++v)
+      if (!in_face[v] && is_new(v)) return true;
+    return false;
+  }
+  static std::set<ChartId> charts_of(const std::set<std::uint64_t>& ids, const ChartsOfVertices& charts) {
+    std::set<ChartId> all;
+    for (const std::uint64_t id : ids) all.insert(charts.at(id).begin(), charts.at(id).end());
+    return all;
+  }
+
+  const Model &base_, &ours_, &theirs_;
+  std::set<std::uint64_t> touched_, by_theirs_;
+};
+
+/// What each version ought to hold, and what it was made from.
+class History {
+ public:
+  void add(VersionId version, std::vector<VersionId> parents, Model model) {
+    versions_.emplace(version, Version{std::move(model), std::move(parents)});
+  }
+  [[nodiscard]] const Model& model(VersionId version) const { return versions_.at(version).model; }
+  [[nodiscard]] const std::vector<VersionId>& parents(VersionId version) const { return versions_.at(version).parents; }
+
+  [[nodiscard]] VersionId any(std::mt19937& random) const {
+    auto it = versions_.begin();
+    std::advance(it, static_cast<std::ptrdiff_t>(random() % versions_.size()));
+    return it->first;
+  }
+  /// With itself.
+  [[nodiscard]] std::set<VersionId> ancestors(VersionId version) const {
+    std::set<VersionId> seen{version};
+    std::vector<VersionId> open{version};
+    while (!open.empty()) {
+      const VersionId next = open.back();
+      open.pop_back();
+      for (const VersionId parent : parents(next))
+        if (seen.insert(parent).second) open.push_back(parent);
+    }
+    return seen;
+  }
+  [[nodiscard]] bool leads_to(VersionId version, VersionId ancestor) const {
+    return ancestors(version).contains(ancestor);
+  }
+  /// Whether it is a common ancestor that no other one descends from.
+  [[nodiscard]] bool is_merge_base(VersionId base, VersionId a, VersionId b) const {
+    const std::set<VersionId> of_a = ancestors(a), of_b = ancestors(b);
+    if (!of_a.contains(base) || !of_b.contains(base)) return false;
+    for (const VersionId common : of_a)
+      if (common != base && of_b.contains(common) && leads_to(common, base)) return false;
+    return true;
+  }
+  /// A version below a tip, as a rule one of the last, that was not taken back yet: a second time would be another edit
+  /// that happens to make the same.
+  [[nodiscard]] std::optional<VersionId> to_revert(VersionId tip, std::mt19937& random) {
+    std::vector<VersionId> all;
+    for (const VersionId version : ancestors(tip))
+      if (versions_.at(version).may_be_reverted && !parents(version).empty()) all.push_back(version);
+    if (all.empty()) return std::nullopt;
+    std::sort(all.begin(), all.end());
+    const std::size_t last = random() % 4 ? std::min<std::size_t>(6, all.size()) : all.size();
+    const VersionId version = all[all.size() - 1 - random() % last];
+    versions_.at(version).may_be_reverted = false;
+    return version;
+  }
+
+ private:
+  struct Version {
+    Model model;
+    std::vector<VersionId> parents;
+    bool may_be_reverted = true;
+  };
+  std::map<VersionId, Version> versions_;
+};
+
+}  // namespace ramcdb::test
