@@ -52,6 +52,7 @@ class SeamFinder {
 
   ChartSeams run() {
     out_.wires.resize(batches_.size());
+    seams_of_.resize(batches_.size());
     if (batches_.size() > 1) {
       find_shared_vertices();
       find_seams();
@@ -67,7 +68,7 @@ class SeamFinder {
   [[nodiscard]] ChartBatch load(std::size_t b) const { return load_charts(spool_, batches_[b], points_, lattice_); }
 
   void find_shared_vertices() {
-    SharedVertexFinder finder(work_);
+    SharedVertexFinder finder(work_, kStage);
     for (std::size_t b = 0; b < batches_.size(); ++b) {
       report(0, b);
       std::vector<std::uint32_t> vertices;
@@ -95,7 +96,10 @@ class SeamFinder {
       if (end - begin < 2) continue;
       chartify::Seam& seam = seams_.emplace_back();
       seam.edge = edges[begin].edge;
-      for (std::size_t i = begin; i < end; ++i) seam.parts.push_back(edges[i].batch);
+      for (std::size_t i = begin; i < end; ++i) {
+        seam.parts.push_back(edges[i].batch);
+        seams_of_[edges[i].batch].push_back(seam.edge);
+      }
     }
   }
 
@@ -109,10 +113,7 @@ class SeamFinder {
       out_.topology += analyze_own(batch.mesh, shared);
       if (batches_.size() == 1) return;
       surroundings.add(batch, shared);
-      std::vector<chartify::NumberedEdge> own;
-      for (const chartify::Seam& seam : seams_)
-        if (std::ranges::binary_search(seam.parts, b)) own.push_back(seam.edge);
-      const auto found = chartify::find_shared_ends({batch.mesh, batch.charts, batch.number, shared}, own);
+      const auto found = chartify::find_shared_ends({batch.mesh, batch.charts, batch.number, shared}, seams_of_[b]);
       ends.cut_edges.insert(ends.cut_edges.end(), found.cut_edges.begin(), found.cut_edges.end());
       ends.corners.insert(ends.corners.end(), found.corners.begin(), found.corners.end());
     }
@@ -129,6 +130,7 @@ class SeamFinder {
   const Lattice& lattice_;
   const LargeWork& work_;
   std::vector<chartify::Seam> seams_;
+  std::vector<std::vector<chartify::NumberedEdge>> seams_of_;  ///< per batch, ascending
   ChartSeams out_;
 };
 

@@ -24,7 +24,7 @@ class BlockSorter {
     add_faces();
     add_isolated_vertices();
     FaceBlocks blocks(work_.folder);
-    SharedVertexFinder finder(work_);
+    SharedVertexFinder finder(work_, kStage);
     std::vector<std::uint32_t> vertices;
     std::uint64_t begin = 0, key = 0;
     const auto end_block = [&] {
@@ -74,6 +74,7 @@ class BlockSorter {
 
   void add_isolated_vertices() {
     for (std::uint32_t v = 0; v < mesh_.points.size(); ++v) {
+      if (v % (1U << 20) == 0) report(0.5);
       if (mesh_.in_a_face[v]) continue;
       const LatticePoint p = point(v);
       sorter_.add({curve_.key(p, p, p), {v, SortedFace::kNoVertex, SortedFace::kNoVertex}, SortedFace::kNoVertex});

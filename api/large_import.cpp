@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <span>
+#include <utility>
 
 #include "api/batch_encoder.h"
 #include "api/block_cutter.h"
@@ -16,8 +19,20 @@ namespace {
 
 /// How many faces are held at a time, with all that chartify/ and codec/ need for them.
 std::uint64_t faces_at_a_time(const LargeWork& work, std::uint32_t chart_faces) {
-  constexpr std::uint64_t kBytesPerFace = 230, kLeastCharts = 4;
+  constexpr std::uint64_t kBytesPerFace = 320, kLeastCharts = 4;
   return std::max<std::uint64_t>(work.memory / kBytesPerFace, kLeastCharts * chart_faces);
+}
+
+/// The positions of a mesh; every walk through them can be cancelled.
+PositionSource positions_of(const MeshSpool& mesh, const LargeWork& work) {
+  PositionSource source = mesh.points.source();
+  source.walk = [&work, walk = std::move(source.walk)](const std::function<bool(std::span<const Point>)>& take) {
+    walk([&](std::span<const Point> some) {
+      work.report("snap", 0);
+      return take(some);
+    });
+  };
+  return source;
 }
 
 /// Snaps all positions: sets the box of the lattice points that they become, and measures how far the farthest moves
@@ -47,7 +62,7 @@ MeshRecord record_for(const MeshSpool& mesh, const ImportOptions& options, Impor
                       const LargeWork& work) {
   MeshRecord record;
   const NumberType type = mesh.points.type();
-  record.lattice = choose_lattice(mesh.points.source(), type, options);
+  record.lattice = choose_lattice(positions_of(mesh, work), type, options);
   record.profile = options.profile == ChartProfile::fast ? codec::Profile::fast : codec::Profile::dense;
   record.target_faces = options.chart_faces;
   if (options.lossless) record.exact = type;

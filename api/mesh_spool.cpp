@@ -95,6 +95,7 @@ MeshSpool spool_mesh(const std::filesystem::path& file, std::optional<bool> weld
   mesh.in_a_face.resize(static_cast<std::size_t>(mesh.points.size()));
   if (weld_points.value_or(rest.soup)) weld(mesh, work);
   mesh.faces.for_each_piece([&](std::span<const Triangle> piece, std::uint64_t) {
+    work.report("read", 1);
     for (const Triangle& t : piece)
       for (const std::uint32_t v : t) mesh.in_a_face[v] = true;
   });

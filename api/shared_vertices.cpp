@@ -34,7 +34,9 @@ SharedVertices SharedVertexFinder::find() {
     }
     groups.clear();
   };
-  merge_runs(cursors, [&](std::uint32_t next, std::size_t group) {
+  merge_runs(cursors, [&, seen = std::uint64_t{0}](std::uint32_t next, std::size_t group) mutable {
+    if (seen++ % kMostHeld == 0)
+      work_.report(stage_, 0.9 + 0.1 * static_cast<double>(seen) / static_cast<double>(vertices_.size()));
     if (next != vertex) end_vertex();
     vertex = next;
     groups.push_back(static_cast<std::uint32_t>(group));

@@ -25,7 +25,8 @@ struct SharedVertices {
 /// Finds them by merging the groups' vertices, which wait in a temporary file.
 class SharedVertexFinder {
  public:
-  explicit SharedVertexFinder(const LargeWork& work) : work_(work), vertices_(work.folder) {}
+  /// \param stage of the work, for its progress
+  SharedVertexFinder(const LargeWork& work, const char* stage) : work_(work), stage_(stage), vertices_(work.folder) {}
 
   /// The next group, 0, 1, ...; its vertices in any order, any number of times.
   void add_group(std::vector<std::uint32_t> vertices);
@@ -33,6 +34,7 @@ class SharedVertexFinder {
 
  private:
   const LargeWork& work_;
+  const char* stage_;
   ScratchRecords<std::uint32_t> vertices_;
   std::vector<std::uint64_t> ends_;
 };

@@ -58,7 +58,7 @@ class Imports {
   TempFolder folder_;
 };
 
-struct Family {
+struct LargeMesh {
   const char* name;
   TestMesh mesh;
 };
@@ -117,7 +117,7 @@ TestMesh sheets() {
   return mesh;
 }
 
-std::vector<Family> families() {
+std::vector<LargeMesh> large_meshes() {
   return {{"sphere", sphere(6000)},
           {"genus3", genus3(6000)},
           {"terrain", terrain(60, 50)},
@@ -148,7 +148,7 @@ void expect_same_mesh(const Snapshot& snapshot, const TestMesh& mesh) {
 }
 
 TEST(LargeImport, InManyBlocksGivesTheSameMeshAndCounts) {
-  for (const Family& family : families()) {
+  for (const LargeMesh& family : large_meshes()) {
     SCOPED_TRACE(family.name);
     const Imports imports;
     const MeshInfo in_core = imports.import(family.mesh, "in core", {}).info;
@@ -229,7 +229,7 @@ TEST(LargeImport, KeepsPositionsToTheLastBit) {
   }
 }
 
-std::string error_of(const std::function<void()>& work) {
+std::string text_of_error(const std::function<void()>& work) {
   try {
     work();
   } catch (const Error& e) {
@@ -248,8 +248,8 @@ TEST(LargeImport, RefusesWhatItCannotTakeUnlessMemoryIsLeftOpen) {
          "property list uchar int vertex_indices\nend_header\n"
          "0 0 0 1\n1 0 0 2\n1 1 0 3\n3 0 1 2\n";
   for (const char* file : {"quad.obj", "group.obj", "color.ply"}) {
-    EXPECT_THAT(error_of([&] { (void)imports.import(file, file, 1); }), testing::HasSubstr("--memory")) << file;
-    EXPECT_EQ(error_of([&] { (void)imports.import(file, file, {}); }), "") << file;
+    EXPECT_THAT(text_of_error([&] { (void)imports.import(file, file, 1); }), testing::HasSubstr("--memory")) << file;
+    EXPECT_EQ(text_of_error([&] { (void)imports.import(file, file, {}); }), "") << file;
   }
 }
 
@@ -268,9 +268,9 @@ TEST(LargeImport, RefusesBrokenFilesInTheWordsOfOthers) {
   };
   for (const auto& [file, text] : files) {
     std::ofstream(imports / file, std::ios::binary) << text;
-    const std::string in_core = error_of([&] { (void)imports.import(file, file, {}); });
+    const std::string in_core = text_of_error([&] { (void)imports.import(file, file, {}); });
     EXPECT_NE(in_core, "") << file;
-    EXPECT_EQ(error_of([&] { (void)imports.import(file, file, 1); }), in_core);
+    EXPECT_EQ(text_of_error([&] { (void)imports.import(file, file, 1); }), in_core);
   }
 }
 
@@ -291,7 +291,7 @@ TEST(LargeImport, ThatIsCancelledAtAnyStageLeavesNothing) {
         if (stage == stop) throw Error(Errc::cancelled, "stopped");
       };
     };
-    EXPECT_EQ(error_of([&] { (void)imports.import("a.stl", "first", kLittle, cancel); }), "stopped") << stop;
+    EXPECT_EQ(text_of_error([&] { (void)imports.import("a.stl", "first", kLittle, cancel); }), "stopped") << stop;
     EXPECT_TRUE(imports.repository().meshes().empty()) << stop;
   }
   EXPECT_THAT(imports.files(), testing::Not(testing::Contains(testing::HasSubstr("scratch"))));
