@@ -13,6 +13,7 @@
 #include "api/progress.h"
 #include "api/region_file.h"
 #include "api/sidecar.h"
+#include "api/streamed_export.h"
 #include "ramcdb/error.h"
 
 namespace ramcdb::detail {
@@ -33,6 +34,19 @@ CheckoutReport report_for(const Snapshot& snapshot, const RegionMesh& region, co
   report.blobs_read = cost.blobs;
   report.pages_read = cost.pages;
   report.local_origin = written.local_origin;
+  for (const auto& dropped : written.left_out) report.left_out.push_back({dropped.what, dropped.count});
+  return report;
+}
+
+CheckoutReport report_for(const Snapshot& snapshot, const StreamedExport& written) {
+  CheckoutReport report;
+  report.revision = snapshot.version();
+  report.charts = written.charts;
+  report.faces = written.faces;
+  report.vertices = written.vertices;
+  report.bytes_read = written.cost.bytes;
+  report.blobs_read = written.cost.blobs;
+  report.pages_read = written.cost.pages;
   for (const auto& dropped : written.left_out) report.left_out.push_back({dropped.what, dropped.count});
   return report;
 }
@@ -162,6 +176,11 @@ CheckoutReport checkout_region(db::Store& store, const std::filesystem::path& re
 CheckoutReport export_mesh(const Snapshot& snapshot, const std::filesystem::path& file, const FileOptions& options) {
   const auto start = Clock::now();
   refuse_to_overwrite(file, options);
+  if (exports_in_pieces(snapshot, file, options)) {
+    CheckoutReport report = report_for(snapshot, export_in_pieces(snapshot, file, options));
+    report.seconds = seconds_since(start);
+    return report;
+  }
   ReadCost cost;
   const auto charts = snapshot.find({{WholeMesh{}}, 0}, &cost);
   const RegionMesh region = snapshot.read_with_attributes(charts, options.threads, &cost);

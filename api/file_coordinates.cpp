@@ -123,7 +123,25 @@ std::optional<Point> origin_for(const Positions& positions, Format format, const
   return (too_coarse || too_long) && helps ? std::optional(middle) : std::nullopt;
 }
 
+void refuse_floats(Format format) {
+  throw Error(Errc::invalid_argument,
+              std::string(is_gltf(format) ? "glTF" : "STL") + " holds 32-bit floats, too coarse for these coordinates",
+              {}, "write .ply, .obj or .off");
+}
+
 }  // namespace
+
+bool floats_hold(const Snapshot& snapshot, const RegionMesh& region) {
+  return Positions(snapshot, region).held_by_floats({});
+}
+
+Scalar scalar_for(const MeshRecord& record, Format format, bool floats) {
+  if (format == Format::stl) {
+    if (!floats) refuse_floats(format);
+    return Scalar::float32;
+  }
+  return floats && record.written_as != NumberType::float64 ? Scalar::float32 : Scalar::float64;
+}
 
 FileCoordinates coordinates_for(const Snapshot& snapshot, const RegionMesh& region, Format format,
                                 const FileOptions& options, bool may_shift) {
@@ -135,10 +153,7 @@ FileCoordinates coordinates_for(const Snapshot& snapshot, const RegionMesh& regi
   if (as_doubles || !positions.held_by_floats(coordinates.origin)) coordinates.scalar = Scalar::float64;
   if (coordinates.scalar == Scalar::float64 && is_gltf(format)) coordinates.file_origin = positions.near_middle();
   if (coordinates.scalar == Scalar::float64 && only_floats && !positions.held_by_floats(coordinates.file_origin))
-    throw Error(
-        Errc::invalid_argument,
-        std::string(is_gltf(format) ? "glTF" : "STL") + " holds 32-bit floats, too coarse for these coordinates", {},
-        "write .ply, .obj or .off");
+    refuse_floats(format);
   if (coordinates.scalar == Scalar::float64 && !positions.held_by_doubles(coordinates.origin))
     throw Error(Errc::invalid_argument, "coordinates relative to a local origin would lose bits of this lossless mesh",
                 {}, "leave out --local-origin");

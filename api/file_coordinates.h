@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "api/mesh_file/mesh_file.h"
+#include "api/mesh_record.h"
 #include "ramcdb/repository.h"
 
 namespace ramcdb::detail {
@@ -22,5 +23,12 @@ struct FileCoordinates {
 /// only and that will not do, and when an origin is asked for that could not be undone.
 [[nodiscard]] FileCoordinates coordinates_for(const Snapshot& snapshot, const RegionMesh& region,
                                               mesh_file::Format format, const FileOptions& options, bool may_shift);
+
+// The same choice for a whole mesh that is not to be edited, without having all of it at hand.
+
+/// Whether float32 lead back to all vertices of a region.
+[[nodiscard]] bool floats_hold(const Snapshot& snapshot, const RegionMesh& region);
+/// \param floats whether float32 hold all vertices
+[[nodiscard]] mesh_file::Scalar scalar_for(const MeshRecord& record, mesh_file::Format format, bool floats);
 
 }  // namespace ramcdb::detail

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "codec/exact_codec.h"
@@ -22,12 +23,17 @@ struct Extent {
   Point lo, hi;
   double largest = 0;
 
-  explicit Extent(std::span<const Point> positions) : lo(positions.front()), hi(positions.front()) {
-    for (const Point& p : positions)
-      for (int a = 0; a < 3; ++a) {
-        lo[a] = std::min(lo[a], p[a]);
-        hi[a] = std::max(hi[a], p[a]);
-      }
+  explicit Extent(const PositionSource& positions) {
+    bool first = true;
+    positions.walk([&](std::span<const Point> some) {
+      if (std::exchange(first, false)) lo = hi = some.front();
+      for (const Point& p : some)
+        for (int a = 0; a < 3; ++a) {
+          lo[a] = std::min(lo[a], p[a]);
+          hi[a] = std::max(hi[a], p[a]);
+        }
+      return true;
+    });
     largest = std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z});
   }
 };
@@ -55,11 +61,15 @@ Lattice binary_lattice(const Extent& extent, int exponent) {
 }
 
 /// Whether every position comes back as the number of `type` that it was.
-bool holds_all(const Lattice& lattice, std::span<const Point> positions, NumberType type) {
-  return std::ranges::all_of(positions, [&](const Point& p) {
-    const Point q = lattice.position(lattice.snap(p));
-    return as_type(q.x, type) == p.x && as_type(q.y, type) == p.y && as_type(q.z, type) == p.z;
+bool holds_all(const Lattice& lattice, const PositionSource& positions, NumberType type) {
+  bool all = true;
+  positions.walk([&](std::span<const Point> some) {
+    return all = std::ranges::all_of(some, [&](const Point& p) {
+             const Point q = lattice.position(lattice.snap(p));
+             return as_type(q.x, type) == p.x && as_type(q.y, type) == p.y && as_type(q.z, type) == p.z;
+           });
   });
+  return all;
 }
 
 /// The lattices of round decimal steps up to `most`, coarse ones first, as far as the mesh has few enough steps.
@@ -78,16 +88,20 @@ std::vector<Lattice> decimal_lattices(const Extent& extent, double most) {
 }
 
 /// The largest k so that all coordinates are multiples of 2^k; none when all are zero.
-std::optional<int> common_exponent(std::span<const Point> positions) {
+std::optional<int> common_exponent(const PositionSource& positions) {
   std::optional<int> common;
-  for (const Point& p : positions)
-    for (int a = 0; a < 3; ++a) {
-      if (p[a] == 0) continue;
-      int exponent = 0;
-      const auto mantissa = static_cast<std::uint64_t>(std::ldexp(std::frexp(std::abs(p[a]), &exponent), 53));
-      const int lowest = exponent - 53 + std::countr_zero(mantissa);
-      if (!common || lowest < *common) common = lowest;
-    }
+  const auto add = [&](double number) {
+    if (number == 0) return;
+    int exponent = 0;
+    const auto mantissa = static_cast<std::uint64_t>(std::ldexp(std::frexp(std::abs(number), &exponent), 53));
+    const int lowest = exponent - 53 + std::countr_zero(mantissa);
+    if (!common || lowest < *common) common = lowest;
+  };
+  positions.walk([&](std::span<const Point> some) {
+    for (const Point& p : some)
+      for (int a = 0; a < 3; ++a) add(p[a]);
+    return true;
+  });
   return common;
 }
 
@@ -107,10 +121,16 @@ Lattice gap_lattice(std::span<const Point> positions, NumberType type, const Ext
   return binary_lattice(extent, std::max({*most == 0 ? kLeast : of_gap - digits, of_extent - kExtentBits, kLeast}));
 }
 
-std::vector<Point> sample_of(std::span<const Point> positions) {
-  constexpr std::size_t kMost = 4096;
+std::vector<Point> sample_of(const PositionSource& positions) {
+  constexpr std::uint64_t kMost = 4096;
   std::vector<Point> sample;
-  for (std::size_t i = 0; i < positions.size(); i += positions.size() / kMost + 1) sample.push_back(positions[i]);
+  std::uint64_t next = 0, first = 0;
+  positions.walk([&](std::span<const Point> some) {
+    for (; next < first + some.size(); next += positions.count / kMost + 1)
+      sample.push_back(some[static_cast<std::size_t>(next - first)]);
+    first += some.size();
+    return true;
+  });
   return sample;
 }
 
@@ -123,7 +143,7 @@ double cost_of(const Lattice& lattice, std::span<const Point> sample, NumberType
   return 3 * (beside == 0 ? bits : std::max(18.0, bits)) + beside / static_cast<double>(sample.size());
 }
 
-Lattice lossless_lattice(std::span<const Point> positions, NumberType type, const Extent& extent) {
+Lattice lossless_lattice(const PositionSource& positions, NumberType type, const Extent& extent) {
   if (extent.largest == 0) return {extent.lo, 1.0};
   const std::vector<Point> sample = sample_of(positions);
   const double magnitude =
@@ -138,7 +158,7 @@ Lattice lossless_lattice(std::span<const Point> positions, NumberType type, cons
                                    [&](const Lattice& lattice) { return cost_of(lattice, sample, type, extent); });
 }
 
-Lattice precise_lattice(std::span<const Point> positions, NumberType type, const Extent& extent, double precision) {
+Lattice precise_lattice(const PositionSource& positions, NumberType type, const Extent& extent, double precision) {
   if (!(precision > 0) || !std::isfinite(precision))
     throw Error(Errc::invalid_argument, fmt::format("precision {} is not a positive number", precision), {},
                 "give the largest coordinate error you accept, in model units");
@@ -158,6 +178,10 @@ Lattice precise_lattice(std::span<const Point> positions, NumberType type, const
 
 }  // namespace
 
+PositionSource PositionSource::of(std::span<const Point> positions) {
+  return {positions.size(), [positions](const std::function<bool(std::span<const Point>)>& take) { take(positions); }};
+}
+
 NumberType type_of(std::span<const Point> positions) {
   const bool floats = std::ranges::all_of(positions, [](const Point& p) {
     return as_type(p.x, NumberType::float32) == p.x && as_type(p.y, NumberType::float32) == p.y &&
@@ -166,7 +190,7 @@ NumberType type_of(std::span<const Point> positions) {
   return floats ? NumberType::float32 : NumberType::float64;
 }
 
-Lattice choose_lattice(std::span<const Point> positions, NumberType type, const ImportOptions& options) {
+Lattice choose_lattice(const PositionSource& positions, NumberType type, const ImportOptions& options) {
   if (options.lattice) return *options.lattice;
   const Extent extent(positions);
   if (!std::isfinite(extent.largest))

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <span>
 
 #include "ramcdb/attributes.h"
@@ -7,6 +9,16 @@
 #include "ramcdb/repository.h"
 
 namespace ramcdb::detail {
+
+/// Positions in memory or on disk, which can be gone through again and again.
+struct PositionSource {
+  std::uint64_t count = 0;
+  /// Calls its argument with all of them, some at a time, until it returns false.
+  std::function<void(const std::function<bool(std::span<const Point>)>&)> walk;
+
+  /// Those must outlive the source.
+  [[nodiscard]] static PositionSource of(std::span<const Point> positions);
+};
 
 /// float32 when all coordinates are such numbers, else float64.
 [[nodiscard]] NumberType type_of(std::span<const Point> positions);
@@ -26,6 +38,6 @@ namespace ramcdb::detail {
 ///
 /// \param type of the positions. Throws invalid_argument for options out of range, limit_exceeded when the mesh does
 /// not fit the lattice.
-[[nodiscard]] Lattice choose_lattice(std::span<const Point> positions, NumberType type, const ImportOptions& options);
+[[nodiscard]] Lattice choose_lattice(const PositionSource& positions, NumberType type, const ImportOptions& options);
 
 }  // namespace ramcdb::detail

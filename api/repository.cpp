@@ -9,6 +9,7 @@
 #include "api/import.h"
 #include "api/import_into.h"
 #include "api/locks.h"
+#include "api/new_mesh.h"
 #include "api/region_log.h"
 #include "api/repack.h"
 #include "api/repository_impl.h"
@@ -175,7 +176,7 @@ ImportReport Repository::import(const std::filesystem::path& file, const ImportO
   }
   const auto store = impl_->store_for_writing();
   std::string name;
-  ImportReport report = detail::import_mesh(*store, file, options, name);
+  ImportReport report = detail::import_mesh(*store, folder(), file, options, name);
   report.info = snapshot(name, options.branch).info();
   return report;
 }

@@ -50,14 +50,19 @@ void ScratchHandle::fail(int error) const {
 
 std::uint64_t ScratchFile::append(Bytes bytes) {
   const std::uint64_t begin = end_;
+  overwrite(begin, bytes);
+  end_ += bytes.size();
+  return begin;
+}
+
+void ScratchFile::overwrite(std::uint64_t begin, Bytes bytes) {
   while (!bytes.empty()) {
-    const ssize_t written = ::pwrite(handle_.descriptor(), bytes.data(), bytes.size(), static_cast<off_t>(end_));
+    const ssize_t written = ::pwrite(handle_.descriptor(), bytes.data(), bytes.size(), static_cast<off_t>(begin));
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) handle_.fail(errno);
-    end_ += static_cast<std::uint64_t>(written);
+    begin += static_cast<std::uint64_t>(written);
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
-  return begin;
 }
 
 void ScratchFile::read(std::uint64_t begin, std::span<std::uint8_t> to) const {
@@ -74,6 +79,17 @@ Buffer ScratchFile::read(std::uint64_t begin, std::size_t size) const {
   Buffer bytes(size);
   read(begin, bytes);
   return bytes;
+}
+
+ScratchView::ScratchView(const ScratchFile& file) : size_(file.size()) {
+  if (size_ == 0) return;
+  void* mapped = ::mmap(nullptr, size_, PROT_READ, MAP_SHARED, file.handle().descriptor(), 0);
+  if (mapped == MAP_FAILED) file.handle().fail(errno);
+  bytes_ = static_cast<const std::byte*>(mapped);
+}
+
+ScratchView::~ScratchView() {
+  if (bytes_ != nullptr) ::munmap(const_cast<std::byte*>(bytes_), size_);
 }
 
 ScratchMemory::ScratchMemory(const std::filesystem::path& folder, std::uint64_t size) : handle_(folder), size_(size) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <utility>
 
 #include "ramcdb/bytes.h"
 
@@ -37,14 +38,39 @@ class ScratchFile {
  public:
   explicit ScratchFile(const std::filesystem::path& folder) : handle_(folder) {}
 
+  [[nodiscard]] std::uint64_t size() const { return end_; }
+  [[nodiscard]] const ScratchHandle& handle() const { return handle_; }
+
   /// Returns where the bytes begin.
   std::uint64_t append(Bytes bytes);
+  /// Over bytes that were appended.
+  void overwrite(std::uint64_t begin, Bytes bytes);
   void read(std::uint64_t begin, std::span<std::uint8_t> to) const;
   [[nodiscard]] Buffer read(std::uint64_t begin, std::size_t size) const;
 
  private:
   ScratchHandle handle_;
   std::uint64_t end_ = 0;
+};
+
+/// What a scratch file holds by now, for reading here and there: pages of it that the kernel may drop at any time. It
+/// goes on when the file is gone.
+class ScratchView {
+ public:
+  explicit ScratchView(const ScratchFile& file);
+  ScratchView(ScratchView&& other) noexcept
+      : bytes_(std::exchange(other.bytes_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+  ScratchView& operator=(ScratchView&&) = delete;
+  ~ScratchView();
+
+  template <class T>
+  [[nodiscard]] std::span<const T> as() const {
+    return {reinterpret_cast<const T*>(bytes_), size_ / sizeof(T)};
+  }
+
+ private:
+  const std::byte* bytes_ = nullptr;
+  std::size_t size_ = 0;
 };
 
 /// Memory that lies in a file, which the kernel writes out when it needs the room. All zeros at first.

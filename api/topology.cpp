@@ -1,7 +1,9 @@
 #include "api/topology.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <span>
@@ -11,6 +13,18 @@
 
 namespace ramcdb::detail {
 namespace {
+
+/// What of a mesh is counted.
+struct Scope {
+  std::span<const std::uint8_t> shared = {};  ///< empty: no vertex is
+  bool of_shared = false;                     ///< what is between shared vertices only, or all else
+
+  [[nodiscard]] bool has(std::uint32_t vertex) const { return shared.empty() || (shared[vertex] != 0) == of_shared; }
+  [[nodiscard]] bool has(std::span<const std::uint32_t> vertices) const {
+    const bool all = std::ranges::all_of(vertices, [&](std::uint32_t v) { return !shared.empty() && shared[v]; });
+    return all == of_shared;
+  }
+};
 
 bool is_degenerate(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
@@ -71,7 +85,8 @@ struct Passes {
 };
 
 /// Vertices whose face corners stay in several groups after corners are joined over every edge at the vertex.
-std::uint64_t count_nonmanifold_vertices(const chartify::IndexedMesh& mesh, const std::vector<Pass>& passes) {
+std::uint64_t count_nonmanifold_vertices(const chartify::IndexedMesh& mesh, const std::vector<Pass>& passes,
+                                         const Scope& scope) {
   DisjointSets corners(mesh.faces.size() * 3);
   std::vector<bool> on_bad_edge(mesh.positions.size(), false);
   const auto corner_at = [&](std::uint32_t corner, std::uint32_t vertex) {
@@ -93,7 +108,7 @@ std::uint64_t count_nonmanifold_vertices(const chartify::IndexedMesh& mesh, cons
     for (std::uint32_t i = 0; i < 3; ++i) {
       const std::uint32_t v = mesh.faces[f][i], root = corners.root(3 * f + i);
       if (group[v] == kNone) group[v] = root;
-      if (group[v] != root && !on_bad_edge[v]) split[v] = true;
+      if (group[v] != root && !on_bad_edge[v] && scope.has(v)) split[v] = true;
     }
   }
   return static_cast<std::uint64_t>(std::count(split.begin(), split.end(), true));
@@ -106,9 +121,10 @@ std::uint64_t count_equal(auto& sets) {
   return equal;
 }
 
-std::uint64_t count_duplicates(const chartify::IndexedMesh& mesh) {
+std::uint64_t count_duplicates(const chartify::IndexedMesh& mesh, const Scope& scope) {
   if (mesh.polygon_of_face.empty()) {
-    std::vector<Triangle> sorted(mesh.faces);
+    std::vector<Triangle> sorted;
+    std::ranges::copy_if(mesh.faces, std::back_inserter(sorted), [&](const Triangle& t) { return scope.has(t); });
     for (Triangle& t : sorted) std::sort(t.begin(), t.end());
     return count_equal(sorted);
   }
@@ -124,9 +140,7 @@ std::uint64_t count_duplicates(const chartify::IndexedMesh& mesh) {
   return count_equal(sorted);
 }
 
-}  // namespace
-
-Topology analyze(const chartify::IndexedMesh& mesh) {
+Topology analyze_in(const chartify::IndexedMesh& mesh, const Scope& scope) {
   Topology t;
   std::vector<bool> used(mesh.positions.size(), false);
   for (const Triangle& face : mesh.faces) {
@@ -136,12 +150,37 @@ Topology analyze(const chartify::IndexedMesh& mesh) {
   t.isolated_vertices = static_cast<std::uint64_t>(std::count(used.begin(), used.end(), false));
   const std::vector<Pass> passes = sorted_passes(mesh.faces, mesh.positions.size());
   for_each_edge(passes, [&](std::span<const Pass> edge) {
+    if (!scope.has(std::array{edge[0].low, edge[0].high})) return;
     const Passes by_faces(mesh, edge);
     t.nonmanifold_edges += by_faces.all() > 2;
     t.inconsistent_edges += by_faces.all() == 2 && by_faces.forward != 1;
   });
-  t.nonmanifold_vertices = count_nonmanifold_vertices(mesh, passes);
-  t.duplicate_faces = count_duplicates(mesh);
+  t.nonmanifold_vertices = count_nonmanifold_vertices(mesh, passes, scope);
+  t.duplicate_faces = count_duplicates(mesh, scope);
+  return t;
+}
+
+}  // namespace
+
+Topology& Topology::operator+=(const Topology& other) {
+  nonmanifold_edges += other.nonmanifold_edges;
+  nonmanifold_vertices += other.nonmanifold_vertices;
+  inconsistent_edges += other.inconsistent_edges;
+  degenerate_faces += other.degenerate_faces;
+  duplicate_faces += other.duplicate_faces;
+  isolated_vertices += other.isolated_vertices;
+  return *this;
+}
+
+Topology analyze(const chartify::IndexedMesh& mesh) { return analyze_in(mesh, {}); }
+
+Topology analyze_own(const chartify::IndexedMesh& part, std::span<const std::uint8_t> shared) {
+  return analyze_in(part, {shared, false});
+}
+
+Topology analyze_shared(const chartify::IndexedMesh& surroundings, std::span<const std::uint8_t> shared) {
+  Topology t = analyze_in(surroundings, {shared, true});
+  t.degenerate_faces = t.isolated_vertices = 0;  // the parts have them
   return t;
 }
 

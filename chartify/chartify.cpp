@@ -1,5 +1,8 @@
 #include "chartify/chartify.h"
 
+#include <algorithm>
+
+#include "chartify/block.h"
 #include "chartify/face_moves.h"
 #include "chartify/growth.h"
 #include "chartify/packing.h"
@@ -63,16 +66,50 @@ Charts charts_of(const IndexedMesh& mesh, const Regions& components, const Optio
   return charts;
 }
 
-}  // namespace
+/// Gives each small component that vertices of `later` touch a chart of its own, until the rest of it is there.
+void keep_apart(const IndexedMesh& mesh, const Regions& components, std::span<const std::uint32_t> later,
+                Partition& partition) {
+  std::vector<std::uint32_t> chart_of(components.sizes.size(), kNone);
+  const auto waits = [&](std::uint32_t v) { return later[v] != kNone; };
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const std::uint32_t component = components.region_of_face[f];
+    if (components.charts[component] == 0 && chart_of[component] == kNone && std::ranges::any_of(mesh.faces[f], waits))
+      chart_of[component] = partition.add_chart();
+  }
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const std::uint32_t chart = chart_of[components.region_of_face[f]];
+    if (chart == kNone) continue;
+    partition.chart_of_face[f] = chart;
+    ++partition.sizes[chart];
+  }
+}
 
-Charts chartify(const IndexedMesh& mesh, const Options& options) {
+Charts cut(const IndexedMesh& mesh, std::span<const std::uint32_t> later, const Options& options) {
   require_target(options);
   const std::vector<HalfEdge> twins = find_twins(mesh, group_half_edges(mesh));
   const Neighbours neighbours = find_neighbours(twins);
   const Regions components = find_components(neighbours, options.target_faces);
   Partition partition = options.method == Method::paper ? paper_charts(mesh, twins, neighbours, components, options)
                                                         : refined_charts(mesh, twins, neighbours, components, options);
+  if (!later.empty()) keep_apart(mesh, components, later, partition);
   return charts_of(mesh, components, options, partition);
+}
+
+}  // namespace
+
+Charts chartify(const IndexedMesh& mesh, const Options& options) { return cut(mesh, {}, options); }
+
+BlockCharts cut_block(const IndexedMesh& mesh, std::span<const std::uint32_t> later, const Options& options) {
+  if (later.size() != mesh.positions.size())
+    throw Error(Errc::invalid_argument, "a block of another number of vertices", "chartify");
+  BlockCharts out{cut(mesh, later, options), {}};
+  out.waits_for.assign(out.charts.chart_count, kNone);
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    for (const std::uint32_t v : mesh.faces[f]) {
+      std::uint32_t& block = out.waits_for[out.charts.chart_of_face[f]];
+      block = std::min(block, later[v]);
+    }
+  return out;
 }
 
 Charts refine_cut(const IndexedMesh& mesh, std::vector<std::uint32_t> chart_of_face, const Options& options) {

@@ -9,6 +9,12 @@ namespace {
 
 constexpr int kBits = 16;
 
+LatticeBox box_of(const IndexedMesh& mesh) {
+  LatticeBox box;
+  for (const LatticePoint p : mesh.positions) box.add(p);
+  return box;
+}
+
 }  // namespace
 
 std::array<std::int64_t, 3> corner_sum(const IndexedMesh& mesh, std::uint32_t face) {
@@ -18,9 +24,7 @@ std::array<std::int64_t, 3> corner_sum(const IndexedMesh& mesh, std::uint32_t fa
   return sum;
 }
 
-HilbertCells::HilbertCells(const IndexedMesh& mesh) : mesh_(mesh) {
-  LatticeBox box;
-  for (const LatticePoint p : mesh.positions) box.add(p);
+HilbertCurve::HilbertCurve(const LatticeBox& box) {
   if (box.empty()) return;
   std::int64_t extent = 1;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -31,15 +35,12 @@ HilbertCells::HilbertCells(const IndexedMesh& mesh) : mesh_(mesh) {
   while ((extent - 1) >> shift_ >> kBits) ++shift_;
 }
 
-std::uint64_t HilbertCells::key_of_vertex(std::uint32_t vertex) const {
-  const LatticePoint p = mesh_.positions[vertex];
-  return key({3 * std::int64_t{p.x}, 3 * std::int64_t{p.y}, 3 * std::int64_t{p.z}});
-}
-
-std::uint64_t HilbertCells::key(const std::array<std::int64_t, 3>& sum) const {
+std::uint64_t HilbertCurve::key(const std::array<std::int64_t, 3>& sum) const {
   std::array<std::uint32_t, 3> cell{};
   for (std::size_t a = 0; a < 3; ++a) cell[a] = static_cast<std::uint32_t>((sum[a] - low_[a]) >> shift_);
   return hilbert_key(cell, kBits);
 }
+
+HilbertCells::HilbertCells(const IndexedMesh& mesh) : mesh_(mesh), curve_(box_of(mesh)) {}
 
 }  // namespace ramcdb::chartify

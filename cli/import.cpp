@@ -24,6 +24,7 @@ struct ImportCommand {
   std::string chartify = "refined";
   std::string profile = "dense";
   ImportOptions options;
+  std::uint64_t memory = 0;
   OutputMode mode;
 };
 
@@ -198,6 +199,7 @@ void setup_import(CLI::App& app, Run& run) {
       ->type_name("NAME");
   add_lattice_options(verb, *command);
   add_chart_options(verb, *command);
+  add_memory(verb, command->memory, "Memory to work in; a mesh that needs more is cut into charts piece by piece");
   verb.add_flag_callback(
       "--weld", [command] { command->options.weld = true; },
       "Join vertices at equal positions (default for STL, whose triangles have their own)");
@@ -211,7 +213,7 @@ void setup_import(CLI::App& app, Run& run) {
       "--into", command->into, "Add it to this mesh as new components, on the mesh's lattice, instead of as a mesh");
   into->type_name("MESH");
   for (const char* other : {"--name", "--bits", "--precision", "--lossless", "--lattice-of", "--chart-faces",
-                            "--chartify", "--profile", "--lossless-attributes"})
+                            "--chartify", "--profile", "--lossless-attributes", "--memory"})
     into->excludes(verb.get_option(other));
   add_message(verb, command->options.message, false);
   verb.add_option("--branch", command->options.branch,
@@ -221,7 +223,10 @@ void setup_import(CLI::App& app, Run& run) {
   add_threads(verb, command->options.threads);
   add_output_mode(verb, command->mode);
   add_example(verb, "ramcdb import statues.ramcdb dragon.ply --precision 0.001 -m \"the scan of May\"");
-  verb.callback([command, &run] { run = [command] { return run_import(*command); }; });
+  verb.callback([command, &verb, &run] {
+    if (verb.count("--memory") > 0) command->options.memory = command->memory;
+    run = [command] { return run_import(*command); };
+  });
 }
 
 }  // namespace ramcdb::cli

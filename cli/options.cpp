@@ -75,9 +75,9 @@ void add_threads(CLI::App& verb, unsigned& threads) {
       ->check(CLI::Range(1U, 1024U));
 }
 
-void add_memory(CLI::App& verb, std::uint64_t& bytes) {
+void add_memory(CLI::App& verb, std::uint64_t& bytes, const std::string& what) {
   bytes = std::uint64_t{1} << 30;
-  verb.add_option("--memory", bytes, "Memory to work in; it changes the time, never the result (default: 1G)")
+  verb.add_option("--memory", bytes, what + " (default: 1G)")
       ->type_name("SIZE")
       ->transform(CLI::Validator(to_bytes, ""));
 }

@@ -36,8 +36,9 @@ void add_at(CLI::App& verb, MeshAt& which);
 /// -j/--threads; sets `threads` to the number of cores first.
 void add_threads(CLI::App& verb, unsigned& threads);
 
-/// --memory SIZE: 512M, 4G; sets `bytes` to 1 GB first.
-void add_memory(CLI::App& verb, std::uint64_t& bytes);
+/// --memory SIZE: 512M, 4G; sets `bytes` to 1 GB first. \param what the help says of it, the default aside
+void add_memory(CLI::App& verb, std::uint64_t& bytes,
+                const std::string& what = "Memory to work in; it changes the time, never the result");
 
 /// -m/--message, required and not empty, where `required`.
 void add_message(CLI::App& verb, std::string& message, bool required);

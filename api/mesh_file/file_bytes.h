@@ -41,14 +41,22 @@ class FileBytes {
 /// A word of a file for messages and names: its first 40 bytes, what is not printable ASCII as \xNN.
 [[nodiscard]] std::string shown(std::string_view word);
 
-/// One reader per format; `read_mesh` does the checks that all share.
-void read_ply(const FileBytes& file, MeshData& mesh, const Progress& progress);
-void read_obj(const FileBytes& file, MeshData& mesh, const Progress& progress);
+/// Vertices or faces that a piece holds.
+inline constexpr std::size_t kPiece = 1 << 16;
+
+/// One reader per format; `read_mesh` does the checks that all share. Those that take a sink read in pieces where there
+/// is one.
+void read_ply(const FileBytes& file, MeshData& mesh, MeshSink* sink, const Progress& progress);
+void read_obj(const FileBytes& file, MeshData& mesh, MeshSink* sink, const Progress& progress);
 void read_off(const FileBytes& file, MeshData& mesh, const Progress& progress);
 /// What stands behind the line "OFF BINARY", from byte `offset` on.
 void read_binary_off(const FileBytes& file, std::size_t offset, MeshData& mesh);
-void read_stl(const FileBytes& file, MeshData& mesh, const Progress& progress);
+void read_stl(const FileBytes& file, MeshData& mesh, MeshSink* sink, const Progress& progress);
 void read_gltf(const FileBytes& file, MeshData& mesh, const Progress& progress);
+
+/// Faces of a PLY file by its header; of an STL file by its count, or about as many as its text has.
+[[nodiscard]] std::uint64_t count_ply_faces(const FileBytes& file);
+[[nodiscard]] std::uint64_t count_stl_faces(const FileBytes& file);
 
 /// Ends a face of so many corners, which are there already. Sizes are kept from the first face on that is no triangle.
 inline void end_face(MeshData& mesh, std::uint32_t corners) {

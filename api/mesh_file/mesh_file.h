@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ramcdb/attributes.h"
+#include "ramcdb/error.h"
 #include "ramcdb/geometry.h"
 
 /// Ordinary mesh files, as they are: nothing is repaired, and what is not kept is named.
@@ -55,6 +56,33 @@ struct MeshData {
 /// The same for the bytes of a file that are in memory already; `name` is what messages call it.
 [[nodiscard]] MeshData read_mesh_bytes(std::string_view bytes, Format format, std::string_view name,
                                        const std::function<void(double)>& progress = {});
+
+/// Takes a mesh from its file piece by piece.
+class MeshSink {
+ public:
+  virtual ~MeshSink() = default;
+  /// What comes next, behind what earlier pieces held: positions, corners, sizes of faces, values. `piece` says which
+  /// attributes there are even where it has no values of them. Corners may name vertices of any piece. Leaves all of
+  /// these empty.
+  virtual void take(MeshData& piece) = 0;
+};
+
+/// Whether files of a format can be read in pieces: PLY, OBJ and STL, of which OBJ only without attributes.
+[[nodiscard]] constexpr bool reads_in_pieces(Format format) {
+  return format == Format::ply || format == Format::obj || format == Format::stl;
+}
+/// A file that only read_mesh can read.
+class NotInPieces : public Error {
+ public:
+  NotInPieces(std::string_view what, std::string_view file);
+};
+/// Reads such a file in pieces, which take little memory, and returns what is no part of them. Throws as read_mesh, and
+/// NotInPieces.
+[[nodiscard]] MeshData read_in_pieces(const std::filesystem::path& file, MeshSink& sink,
+                                      const std::function<void(double)>& progress = {});
+
+/// How many faces a file has, or about as many, without reading it; 0 where it cannot be told.
+[[nodiscard]] std::uint64_t estimate_faces(const std::filesystem::path& file);
 
 /// Makes vertices at equal positions one (-0 equals 0); of their ids and attributes the first's stay.
 void weld_exact(MeshData& mesh);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <limits>
 
@@ -13,8 +14,8 @@ namespace {
 
 class ObjReader {
  public:
-  ObjReader(const FileBytes& file, MeshData& mesh, const Progress& progress)
-      : file_(file), scan_(file, 0, 0, progress), mesh_(mesh) {
+  ObjReader(const FileBytes& file, MeshData& mesh, MeshSink* sink, const Progress& progress)
+      : file_(file), scan_(file, 0, 0, progress), mesh_(mesh), sink_(sink) {
     scan_.comment = '#';
   }
 
@@ -32,11 +33,13 @@ class ObjReader {
         normals_.read_line(scan_);
       else
         read_other(keyword);
+      if (sink_ && std::max(mesh_.positions.size(), mesh_.corners.size()) >= kPiece) hand_over_piece();
     }
-    if (!mesh_.corners.empty() && largest_ >= mesh_.positions.size())
-      throw bad_line(file_, largest_line_,
-                     fmt::format("vertex index {} does not exist ({} vertices)", std::uint64_t{largest_} + 1,
-                                 mesh_.positions.size()));
+    if (largest_line_ && largest_ >= vertices_)
+      throw bad_line(
+          file_, largest_line_,
+          fmt::format("vertex index {} does not exist ({} vertices)", std::uint64_t{largest_} + 1, vertices_));
+    if (sink_) hand_over_piece();
     hand_over();
   }
 
@@ -45,6 +48,7 @@ class ObjReader {
     Point p;
     for (int a = 0; a < 3; ++a) p[a] = scan_.number("a coordinate");
     mesh_.positions.push_back(p);
+    ++vertices_;
     constexpr std::size_t kColor = 3;
     std::string_view words[kColor];
     std::size_t extra = 0;
@@ -59,7 +63,7 @@ class ObjReader {
   }
 
   void add_color(const std::string_view (&words)[3]) {
-    colors_.resize(3 * (mesh_.positions.size() - 1), kNone);
+    colors_.resize(3 * (vertices_ - 1), kNone);
     for (const std::string_view word : words) colors_.push_back(scan_.parse_value(word, NumberType::float64));
   }
 
@@ -68,6 +72,7 @@ class ObjReader {
     for (std::string_view word; !(word = scan_.word()).empty(); ++corners) {
       const std::size_t slash = word.find('/');
       mesh_.corners.push_back(index(word.substr(0, slash)));
+      ++corners_;
       if (slash != word.npos) read_indices(word.substr(slash + 1));
     }
     if (corners < 3) throw scan_.bad(fmt::format("a face has {} corners", corners));
@@ -77,7 +82,7 @@ class ObjReader {
 
   /// "t", "t/n" or "/n" of the newest corner.
   void read_indices(std::string_view words) {
-    const std::size_t corner = mesh_.corners.size() - 1, slash = words.find('/');
+    const std::size_t corner = corners_ - 1, slash = words.find('/');
     if (const auto texture = words.substr(0, slash); !texture.empty()) textures_.read_index(scan_, texture, corner);
     if (slash == words.npos) return;
     const auto normal = words.substr(slash + 1);
@@ -88,7 +93,7 @@ class ObjReader {
 
   std::uint32_t index(std::string_view word) {
     const std::int64_t i = scan_.parse_integer(word, "a vertex index");
-    const auto count = static_cast<std::int64_t>(mesh_.positions.size());
+    const auto count = static_cast<std::int64_t>(vertices_);
     const std::int64_t v = i < 0 ? count + i : i - 1;
     // Vertices may follow their faces, so that a large index is judged at the end of the file; a relative one is not.
     if (i == 0 || v < 0 || v > 0xfffffffd)
@@ -124,6 +129,13 @@ class ObjReader {
       dropped_.add("'s' lines");
   }
 
+  void hand_over_piece() {
+    const bool has_attributes = !colors_.empty() || textures_.used() || normals_.used() || objects_.used() ||
+                                groups_.used() || materials_.used() || smoothing_.used();
+    if (has_attributes) throw NotInPieces("an OBJ file with more than vertices and faces", file_.name());
+    sink_->take(mesh_);
+  }
+
   void hand_over() {
     if (!colors_.empty()) {
       colors_.resize(3 * mesh_.positions.size(), kNone);
@@ -155,6 +167,8 @@ class ObjReader {
   const FileBytes& file_;
   TextScanner scan_;
   MeshData& mesh_;
+  MeshSink* sink_;
+  std::size_t vertices_ = 0, corners_ = 0;
   std::uint32_t largest_ = 0;  ///< vertex index so far, and where it stands
   std::size_t largest_line_ = 0;
   std::size_t faces_ = 0;
@@ -167,8 +181,8 @@ class ObjReader {
 
 }  // namespace
 
-void read_obj(const FileBytes& file, MeshData& mesh, const Progress& progress) {
-  ObjReader(file, mesh, progress).run();
+void read_obj(const FileBytes& file, MeshData& mesh, MeshSink* sink, const Progress& progress) {
+  ObjReader(file, mesh, sink, progress).run();
 }
 
 }  // namespace ramcdb::mesh_file

@@ -28,6 +28,8 @@ class CornerTable {
   /// The word of the corner at this position of MeshData::corners, in their order; corners may be left out.
   void read_index(const TextScanner& scan, std::string_view word, std::size_t corner);
 
+  /// Whether a corner names one of the lines.
+  [[nodiscard]] bool used() const { return !indices_.empty(); }
   /// Adds the attribute, when a corner has a value: of vertices when all corners have one, and those of a vertex the
   /// same; else of corners. Values that no corner names, and corners that name none, are counted.
   void hand_over(std::string_view name, Meaning meaning, MeshData& mesh, DroppedCounter& dropped);
@@ -74,6 +76,7 @@ class FaceSwitch {
 /// A name that holds for all faces behind it; "" before the first.
 class NameSwitch {
  public:
+  [[nodiscard]] bool used() const { return newest_.has_value(); }
   void set(std::string_view name, std::size_t faces_before);
   /// Adds the attribute, unless all faces are without a name. `what` counts the lines that no face came behind.
   void hand_over(std::string_view name, Meaning meaning, std::string_view what, MeshData& mesh,

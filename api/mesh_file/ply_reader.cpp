@@ -21,11 +21,12 @@ constexpr std::size_t kBlockBytes = 1 << 14;
 template <class Values>
 class BodyReader {
  public:
-  BodyReader(Values values, const Header& header, MeshData& mesh, const Progress& progress)
+  BodyReader(Values values, const Header& header, MeshData& mesh, MeshSink* sink, const Progress& progress)
       : values_(std::move(values)),
         vertex_(*header.find("vertex")),
         vertices_(vertex_.count),
         mesh_(mesh),
+        sink_(sink),
         progress_(progress) {
     // Vertices first: a face's attribute of the same name gets another.
     vertex_targets_ = plan_columns(vertex_, mesh, dropped_);
@@ -52,20 +53,31 @@ class BodyReader {
       if (target.kind == Kind::value) mesh_.attributes[target.attribute].values.resize(count * target.components);
   }
 
+  /// Calls read(begin, count) for an element, piece by piece where there is a sink.
+  template <class Read>
+  void in_pieces(const Element& element, Read&& read) {
+    const std::size_t all = element.count, most = sink_ ? kPiece : std::max<std::size_t>(all, 1);
+    for (std::size_t begin = 0; begin < all; begin += most) {
+      read(begin, std::min(most, all - begin));
+      if (sink_) sink_->take(mesh_);
+    }
+  }
+
   void read_vertices(const Element& element) {
-    mesh_.positions.resize(element.count);
-    if (has(vertex_targets_, Kind::id_half)) mesh_.vertex_ids.resize(element.count);
-    take_memory(vertex_targets_, element.count);
-    if constexpr (Values::kBinary) {
-      const bool fixed = std::none_of(element.properties.begin(), element.properties.end(),
-                                      [](const Property& p) { return p.count_type.has_value(); });
-      if (fixed) return read_rows(element);
-    }
-    for (std::size_t v = 0; v < element.count; ++v) {
-      for (std::size_t p = 0; p < element.properties.size(); ++p)
-        read_number(element.properties[p], vertex_targets_[p], v);
-      report(v, element.count);
-    }
+    const bool fixed = Values::kBinary && std::none_of(element.properties.begin(), element.properties.end(),
+                                                       [](const Property& p) { return p.count_type.has_value(); });
+    in_pieces(element, [&](std::size_t begin, std::size_t count) {
+      mesh_.positions.resize(count);
+      if (has(vertex_targets_, Kind::id_half)) mesh_.vertex_ids.assign(count, 0);
+      take_memory(vertex_targets_, count);
+      if constexpr (Values::kBinary)
+        if (fixed) return read_rows(element, begin, count);
+      for (std::size_t v = 0; v < count; ++v) {
+        for (std::size_t p = 0; p < element.properties.size(); ++p)
+          read_number(element.properties[p], vertex_targets_[p], v);
+        report(begin + v, element.count);
+      }
+    });
   }
 
   [[nodiscard]] static bool has(const std::vector<Target>& targets, Kind kind) {
@@ -96,18 +108,19 @@ class BodyReader {
   }
 
   /// Vertices of the same size each: the values of a property stand at fixed places.
-  void read_rows(const Element& element) {
+  /// \param before vertices of earlier pieces
+  void read_rows(const Element& element, std::size_t before, std::size_t all) {
     std::size_t size = 0;
     for (const Property& p : element.properties) size += size_of(p.type);
     const std::size_t block = std::max<std::size_t>(kBlockBytes / size, 1);
-    for (std::size_t begin = 0; begin < element.count; begin += block) {
-      const std::size_t count = std::min<std::size_t>(block, element.count - begin);
+    for (std::size_t begin = 0; begin < all; begin += block) {
+      const std::size_t count = std::min<std::size_t>(block, all - begin);
       const char* rows = values_.rows(count, size);
       for (std::size_t p = 0; p < element.properties.size(); ++p) {
         read_column(rows, size, begin, count, element.properties[p].type, vertex_targets_[p]);
         rows += size_of(element.properties[p].type);
       }
-      if (progress_) progress_(static_cast<double>(begin) / static_cast<double>(element.count));
+      if (progress_) progress_(static_cast<double>(before + begin) / static_cast<double>(element.count));
     }
   }
 
@@ -130,29 +143,35 @@ class BodyReader {
   }
 
   void read_faces(const Element& element) {
-    // As if all were triangles.
-    mesh_.corners.reserve(3 * element.count);
-    take_memory(face_targets_, element.count);
-    for (const Target& target : face_targets_)
-      if (target.kind == Kind::texcoord) mesh_.attributes[target.attribute].values.reserve(6 * element.count);
-    for (std::size_t f = 0; f < element.count; ++f) {
-      std::uint32_t corners = 0;
-      const Target* texcoord = nullptr;
-      for (std::size_t i = 0; i < element.properties.size(); ++i) {
-        const Property& p = element.properties[i];
-        if (face_targets_[i].kind == Kind::indices) {
-          corners = read_corners(p);
-          end_face(mesh_, corners);
-        } else if (face_targets_[i].kind == Kind::texcoord) {
-          texcoord = &face_targets_[i];
-          read_texcoord(p);
-        } else {
-          read_number(p, face_targets_[i], f);
-        }
+    in_pieces(element, [&](std::size_t begin, std::size_t count) {
+      // As if all were triangles.
+      mesh_.corners.reserve(3 * count);
+      take_memory(face_targets_, count);
+      for (const Target& target : face_targets_)
+        if (target.kind == Kind::texcoord) mesh_.attributes[target.attribute].values.reserve(6 * count);
+      for (std::size_t f = 0; f < count; ++f) {
+        read_face(element, f);
+        report(begin + f, element.count);
       }
-      if (texcoord) add_texcoord(mesh_.attributes[texcoord->attribute].values, 2 * std::size_t{corners});
-      report(f, element.count);
+    });
+  }
+
+  void read_face(const Element& element, std::size_t f) {
+    std::uint32_t corners = 0;
+    const Target* texcoord = nullptr;
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+      const Property& p = element.properties[i];
+      if (face_targets_[i].kind == Kind::indices) {
+        corners = read_corners(p);
+        end_face(mesh_, corners);
+      } else if (face_targets_[i].kind == Kind::texcoord) {
+        texcoord = &face_targets_[i];
+        read_texcoord(p);
+      } else {
+        read_number(p, face_targets_[i], f);
+      }
     }
+    if (texcoord) add_texcoord(mesh_.attributes[texcoord->attribute].values, 2 * std::size_t{corners});
   }
 
   std::uint32_t read_corners(const Property& p) {
@@ -206,6 +225,7 @@ class BodyReader {
   const Element& vertex_;
   std::uint64_t vertices_;
   MeshData& mesh_;
+  MeshSink* sink_;
   const Progress& progress_;
   std::vector<Target> vertex_targets_, face_targets_;
   std::vector<double> texcoord_;  ///< of the current face
@@ -214,18 +234,24 @@ class BodyReader {
 
 }  // namespace
 
-void read_ply(const FileBytes& file, MeshData& mesh, const Progress& progress) {
+std::uint64_t count_ply_faces(const FileBytes& file) {
+  const Header header = read_header(file);
+  const Element* face = header.find("face");
+  return face ? face->count : 0;
+}
+
+void read_ply(const FileBytes& file, MeshData& mesh, MeshSink* sink, const Progress& progress) {
   const Header header = read_header(file);
   mesh.references = header.references;
   switch (*header.encoding) {
     case Encoding::ascii:
-      BodyReader(AsciiValues(file, header, progress), header, mesh, progress).run(header);
+      BodyReader(AsciiValues(file, header, progress), header, mesh, sink, progress).run(header);
       break;
     case Encoding::little:
-      BodyReader(BinaryValues<std::endian::little>(file, header), header, mesh, progress).run(header);
+      BodyReader(BinaryValues<std::endian::little>(file, header), header, mesh, sink, progress).run(header);
       break;
     case Encoding::big:
-      BodyReader(BinaryValues<std::endian::big>(file, header), header, mesh, progress).run(header);
+      BodyReader(BinaryValues<std::endian::big>(file, header), header, mesh, sink, progress).run(header);
       break;
   }
 }

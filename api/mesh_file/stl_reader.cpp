@@ -38,10 +38,24 @@ bool begins_as_text(std::string_view text) {
   return lower(text.substr(0, 5)) == "solid";
 }
 
-void add_corner(MeshData& mesh, const Point& p) {
-  mesh.corners.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
-  mesh.positions.push_back(p);
-}
+/// Adds corners to a mesh, each with a vertex of its own.
+class Soup {
+ public:
+  Soup(MeshData& mesh, MeshSink* sink) : mesh_(mesh), sink_(sink) {}
+
+  void add_corner(const Point& p) {
+    mesh_.corners.push_back(vertices_++);
+    mesh_.positions.push_back(p);
+  }
+  void end_facet() {
+    if (sink_ && mesh_.corners.size() >= kPiece) sink_->take(mesh_);
+  }
+
+ private:
+  MeshData& mesh_;
+  MeshSink* sink_;
+  std::uint32_t vertices_ = 0;
+};
 
 /// The bytes behind each facet, which some programs keep a colour in.
 void add_attribute(MeshData& mesh, std::vector<double> values) {
@@ -53,23 +67,26 @@ void add_attribute(MeshData& mesh, std::vector<double> values) {
   mesh.attributes.push_back(std::move(attribute));
 }
 
-void read_binary(const FileBytes& file, MeshData& mesh, const Progress& progress) {
+void read_binary(const FileBytes& file, MeshData& mesh, MeshSink* sink, const Progress& progress) {
   const std::string_view text = file.text();
   const auto count = load<std::uint32_t>(text.data() + 80);
   if (count > (text.size() - kHeader) / kRecord)
     throw bad_byte(file, 80,
                    fmt::format("the file is cut off: {} triangles announced, room for {}", count,
                                (text.size() - kHeader) / kRecord));
-  mesh.positions.reserve(3 * std::size_t{count});
-  mesh.corners.reserve(3 * std::size_t{count});
+  Soup soup(mesh, sink);
+  if (!sink) mesh.positions.reserve(3 * std::size_t{count});
+  if (!sink) mesh.corners.reserve(3 * std::size_t{count});
   std::vector<double> attributes;  // none when all are zero
   for (std::uint32_t f = 0; f < count; ++f) {
     const char* at = text.data() + kHeader + kRecord * f;
     for (int c = 0; c < 3; ++c) {
       const char* p = at + 12 + 12 * c;
-      add_corner(mesh, {load<float>(p), load<float>(p + 4), load<float>(p + 8)});
+      soup.add_corner({load<float>(p), load<float>(p + 4), load<float>(p + 8)});
     }
+    soup.end_facet();
     const auto attribute = load<std::uint16_t>(at + 48);
+    if (attribute && sink) throw NotInPieces("facets with attributes", file.name());
     if (attribute && attributes.empty()) attributes.resize(count);
     if (attribute) attributes[f] = attribute;
     if (progress && f % 65536 == 0) progress(static_cast<double>(f) / count);
@@ -80,7 +97,8 @@ void read_binary(const FileBytes& file, MeshData& mesh, const Progress& progress
   mesh.dropped = dropped.take();
 }
 
-void read_ascii(const FileBytes& file, MeshData& mesh, const Progress& progress) {
+void read_ascii(const FileBytes& file, MeshData& mesh, MeshSink* sink, const Progress& progress) {
+  Soup soup(mesh, sink);
   TextScanner scan(file, 0, 0, progress);
   std::size_t corners = 0;
   DroppedCounter dropped;
@@ -96,11 +114,12 @@ void read_ascii(const FileBytes& file, MeshData& mesh, const Progress& progress)
       if (++corners > 3) throw scan.bad("a facet has more than three vertices");
       Point p;
       for (int a = 0; a < 3; ++a) p[a] = scan.number("a coordinate");
-      add_corner(mesh, p);
+      soup.add_corner(p);
       if (!scan.word().empty()) dropped.add("further words behind coordinates");
     } else if (keyword == "endfacet") {
       if (!in_facet) throw scan.bad("an 'endfacet' without a facet");
       if (corners != 3) throw scan.bad(fmt::format("a facet has {} vertices", corners));
+      soup.end_facet();
       in_facet = false;
     } else if (keyword == "solid" || keyword == "endsolid") {
       in_solid = keyword == "solid";
@@ -114,19 +133,29 @@ void read_ascii(const FileBytes& file, MeshData& mesh, const Progress& progress)
   mesh.dropped = dropped.take();
 }
 
-}  // namespace
-
-void read_stl(const FileBytes& file, MeshData& mesh, const Progress& progress) {
+/// Throws for a file that is neither.
+bool is_binary(const FileBytes& file) {
   const std::string_view text = file.text();
   const bool begins_solid = begins_as_text(text) && (text.size() < kHeader || text[kHeader - 1] != '\0');
   const bool fits_binary =
       text.size() >= kHeader && kHeader + kRecord * std::uint64_t{load<std::uint32_t>(text.data() + 80)} == text.size();
   if (!fits_binary && !begins_solid && text.size() < kHeader)
     throw bad_byte(file, text.size(), "the file is too short for STL");
-  if (fits_binary || !begins_solid)
-    read_binary(file, mesh, progress);
+  return fits_binary || !begins_solid;
+}
+
+}  // namespace
+
+std::uint64_t count_stl_faces(const FileBytes& file) {
+  constexpr std::size_t kTextOfFacet = 200;
+  return is_binary(file) ? load<std::uint32_t>(file.text().data() + 80) : file.text().size() / kTextOfFacet;
+}
+
+void read_stl(const FileBytes& file, MeshData& mesh, MeshSink* sink, const Progress& progress) {
+  if (is_binary(file))
+    read_binary(file, mesh, sink, progress);
   else
-    read_ascii(file, mesh, progress);
+    read_ascii(file, mesh, sink, progress);
   mesh.soup = true;
 }
 

@@ -36,20 +36,23 @@ void write_stl(NewFile& out, const MeshOutput& mesh, DroppedCounter& dropped) {
     else
       drop_attribute(dropped, attribute);
   for (const std::string& reference : mesh.references) drop_reference(dropped, reference);
-  const Triangulation cut = triangulate(mesh.positions, mesh.corners, mesh.face_sizes);
+  Triangulation cut;  // triangles are as they are
+  if (!mesh.face_sizes.empty()) cut = triangulate(mesh.positions, mesh.corners, mesh.face_sizes);
+  const std::size_t count = mesh.face_sizes.empty() ? mesh.corners.size() / 3 : cut.corners.size();
   std::array<char, 80> header{};
   constexpr std::string_view kTitle = "binary STL written by ramcdb";
   std::copy(kTitle.begin(), kTitle.end(), header.begin());
   out.text({header.data(), header.size()});
-  out.binary(static_cast<std::uint32_t>(cut.corners.size()));
-  for (std::size_t i = 0; i < cut.corners.size(); ++i) {
-    const Triangle& t = cut.corners[i];
+  out.binary(static_cast<std::uint32_t>(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto corner = static_cast<std::uint32_t>(3 * i);
+    const Triangle t = mesh.face_sizes.empty() ? Triangle{corner, corner + 1, corner + 2} : cut.corners[i];
     const Point* p[3];
     for (std::size_t c = 0; c < 3; ++c) p[c] = &mesh.positions[mesh.corners[t[c]]];
     for (const float n : facet_normal(*p[0], *p[1], *p[2])) out.binary(n);
-    for (const Point* corner : p)
-      for (int a = 0; a < 3; ++a) out.binary(static_cast<float>((*corner)[a]));
-    const double value = bytes ? bytes->values[cut.face[i]] : 0;
+    for (const Point* at : p)
+      for (int a = 0; a < 3; ++a) out.binary(static_cast<float>((*at)[a]));
+    const double value = bytes ? bytes->values[mesh.face_sizes.empty() ? i : cut.face[i]] : 0;
     out.binary(static_cast<std::uint16_t>(value > 0 ? value : 0));  // NaN is 0
   }
 }

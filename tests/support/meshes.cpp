@@ -38,13 +38,6 @@ double smooth_noise(const Point& p) {
   return sum;
 }
 
-double fractal(const Point& p, int octaves) {
-  double sum = 0, weight = 0.5, scale = 1;
-  for (int o = 0; o < octaves; ++o, weight /= 2, scale *= 2)
-    sum += weight * smooth_noise({p.x * scale + 17 * o, p.y * scale, p.z * scale});
-  return sum;
-}
-
 void append(TestMesh& mesh, const TestMesh& other, const Point& shift, double scale = 1) {
   const Index base = index(mesh.positions.size());
   for (const Point& p : other.positions)
@@ -93,6 +86,13 @@ void append_joined(TestMesh& mesh, const TestMesh& other) {
 }
 
 }  // namespace
+
+double fractal(const Point& p, int octaves) {
+  double sum = 0, weight = 0.5, scale = 1;
+  for (int o = 0; o < octaves; ++o, weight /= 2, scale *= 2)
+    sum += weight * smooth_noise({p.x * scale + 17 * o, p.y * scale, p.z * scale});
+  return sum;
+}
 
 TestMesh sphere(std::size_t faces) {
   const auto nu = std::max<std::size_t>(4, static_cast<std::size_t>(std::sqrt(static_cast<double>(faces))));

@@ -15,6 +15,9 @@ struct TestMesh {
   std::vector<Triangle> faces;
 };
 
+/// Noise, about -1..1, smooth at each of its scales: the first octave has the largest bumps, of size 1.
+[[nodiscard]] double fractal(const Point& p, int octaves);
+
 // Closed surfaces of about as many faces as asked.
 [[nodiscard]] TestMesh sphere(std::size_t faces);
 [[nodiscard]] TestMesh torus(std::size_t faces);

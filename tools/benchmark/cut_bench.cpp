@@ -79,7 +79,7 @@ std::uint64_t bytes_of(const mesh_file::MeshData& data, const chartify::Canonica
   std::uint64_t bytes = record.table ? encoded.tables.size() + kBlobOverhead : 0;
   for (const Buffer& chart : encoded.charts) bytes += chart.size() + kBlobOverhead;
   for (const auto& [first, group] : encoded.wires) bytes += group.size() + kBlobOverhead;
-  for (const Page& page : detail::build_pages(encoded, VersionId(1)))
+  for (const Page& page : detail::build_pages(encoded.entries, VersionId(1)))
     bytes += codec::encode_page(page).size() + kBlobOverhead;
   return bytes;
 }

@@ -50,6 +50,11 @@ struct ImportOptions {
   std::string author;
   std::string branch = "main";  ///< one that is not there yet begins from main
   unsigned threads = 1;         ///< changes the time, never the bytes
+  /// Bytes to work in. A mesh that needs more is imported piece by piece, with temporary files in the repository's
+  /// folder; its charts then are cut elsewhere, but the same for the same memory. That takes triangles without
+  /// attributes from PLY, OBJ and STL; other meshes are refused (limit_exceeded). When not said: 1 GiB, and whatever it
+  /// takes for those others.
+  std::optional<std::uint64_t> memory;
   Progress progress;
 };
 

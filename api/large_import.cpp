@@ -1,0 +1,116 @@
+#include "api/large_import.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <span>
+#include <utility>
+
+#include "api/batch_encoder.h"
+#include "api/block_cutter.h"
+#include "api/chart_seams.h"
+#include "api/face_blocks.h"
+#include "api/mesh_spool.h"
+#include "api/new_mesh.h"
+#include "api/scratch_file.h"
+
+namespace ramcdb::detail {
+namespace {
+
+/// How many faces are held at a time, with all that chartify/ and codec/ need for them.
+std::uint64_t faces_at_a_time(const LargeWork& work, std::uint32_t chart_faces) {
+  constexpr std::uint64_t kBytesPerFace = 320, kLeastCharts = 4;
+  return std::max<std::uint64_t>(work.memory / kBytesPerFace, kLeastCharts * chart_faces);
+}
+
+/// The positions of a mesh; every walk through them can be cancelled.
+PositionSource positions_of(const MeshSpool& mesh, const LargeWork& work) {
+  PositionSource source = mesh.points.source();
+  source.walk = [&work, walk = std::move(source.walk)](const std::function<bool(std::span<const Point>)>& take) {
+    walk([&](std::span<const Point> some) {
+      work.report("snap", 0);
+      return take(some);
+    });
+  };
+  return source;
+}
+
+/// Snaps all positions: sets the box of the lattice points that they become, and measures how far the farthest moves
+/// along an axis: none where all come back as the numbers that they were.
+void measure(const MeshSpool& mesh, MeshRecord& record, double& error, const LargeWork& work) {
+  const NumberType type = mesh.points.type();
+  bool all_come_back = true;
+  std::uint64_t seen = 0;
+  mesh.points.source().walk([&](std::span<const Point> some) {
+    for (const Point& p : some) {
+      const LatticePoint snapped = record.lattice.snap(p);
+      record.range.add(snapped);
+      const Point q = record.lattice.position(snapped);
+      for (int a = 0; a < 3; ++a) {
+        error = std::max(error, std::abs(q[a] - p[a]));
+        all_come_back &= as_type(q[a], type) == p[a];
+      }
+    }
+    work.report("snap", static_cast<double>(seen += some.size()) / static_cast<double>(mesh.points.size()));
+    return true;
+  });
+  if (all_come_back) error = 0;
+}
+
+/// The record as far as it is known before charts are cut.
+MeshRecord record_for(const MeshSpool& mesh, const ImportOptions& options, ImportReport& report,
+                      const LargeWork& work) {
+  MeshRecord record;
+  const NumberType type = mesh.points.type();
+  record.lattice = choose_lattice(positions_of(mesh, work), type, options);
+  record.profile = options.profile == ChartProfile::fast ? codec::Profile::fast : codec::Profile::dense;
+  record.target_faces = options.chart_faces;
+  if (options.lossless) record.exact = type;
+  measure(mesh, record, report.measured_error, work);
+  if (options.lossless) report.measured_error = 0;
+  if (report.measured_error == 0) record.written_as = type;
+  record.vertices = mesh.vertices();
+  record.faces = mesh.faces.size();
+  return record;
+}
+
+ChartSpool cut_charts(const MeshSpool& mesh, const MeshRecord& record, const ImportOptions& options,
+                      std::uint64_t most_faces, const LargeWork& work) {
+  chartify::Options chartify_options;
+  chartify_options.target_faces = options.chart_faces;
+  chartify_options.method = options.paper_chartify ? chartify::Method::paper : chartify::Method::refined;
+  chartify_options.threads = options.threads;
+  // Half is left to what waits for a block.
+  const FaceBlocks blocks = sort_into_blocks(mesh, record.lattice, record.range, most_faces / 2, work);
+  return cut_blocks(blocks, mesh.points, record.lattice, most_faces, chartify_options, work);
+}
+
+}  // namespace
+
+ImportReport import_large(db::Store& store, const std::filesystem::path& file, const ImportOptions& options,
+                          const std::string& name, const LargeWork& work) {
+  ImportReport report;
+  sweep_scratch(work.folder);
+  const MeshSpool mesh = spool_mesh(file, options.weld, work);
+  report.vertices_welded = mesh.welded;
+  for (const auto& left_out : mesh.dropped) report.dropped.push_back({left_out.what, left_out.count});
+  MeshRecord record = record_for(mesh, options, report, work);
+  const std::uint64_t most_faces = faces_at_a_time(work, options.chart_faces);
+  const ChartSpool spool = cut_charts(mesh, record, options, most_faces, work);
+  const std::vector<ChartSpool::Batch> batches = spool.batches(most_faces);
+  const ChartSeams seams = find_seams(spool, batches, mesh.points, record.lattice, work);
+  note_topology(record, seams.topology);
+
+  const BatchedCharts charts{spool, batches, seams, mesh.points};
+  const codec::CoderTables tables = train_tables(charts, record);
+  if (!(tables == codec::CoderTables{})) record.table = record.next_table;
+  BlobSpool blobs(work.folder);
+  const NetEntries entries = encode_batches(charts, tables, record, blobs, work);
+  LayerTable layers;
+  layers.references = mesh.references;
+  publish_mesh(store, {name, file, options}, {entries, record.table ? codec::encode_tables(tables) : Buffer(), layers},
+               record, [&](db::Writer& writer, MeshId id) { blobs.put_all(writer, id, work); });
+  return report;
+}
+
+}  // namespace ramcdb::detail

@@ -1,0 +1,322 @@
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <string>
+
+#include "tests/api/blobs_of.h"
+#include "tests/api/temp_repository.h"
+#include "tests/db/child_process.h"
+
+namespace ramcdb::test {
+namespace {
+
+constexpr std::uint64_t kLittle = 1 << 16;  ///< bytes: blocks are then as small as charts allow
+
+/// A repository to import into.
+class Imports {
+ public:
+  Imports() { Repository::create(folder_ / "r.ramcdb"); }
+
+  [[nodiscard]] Repository repository() const { return Repository::open(folder_ / "r.ramcdb"); }
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
+
+  ImportReport import(const std::string& file, const std::string& name, std::optional<std::uint64_t> memory,
+                      const std::function<void(ImportOptions&)>& change = {}) const {
+    ImportOptions options;
+    options.name = name;
+    options.chart_faces = 50;
+    options.bits = 14;
+    options.memory = memory;
+    options.threads = 2;
+    if (change) change(options);
+    return repository().import(folder_ / file, options);
+  }
+  ImportReport import(const TestMesh& mesh, const std::string& name, std::optional<std::uint64_t> memory,
+                      const std::function<void(ImportOptions&)>& change = {}) const {
+    write_test_mesh(mesh, folder_ / "input.ply");
+    return import("input.ply", name, memory, change);
+  }
+
+  [[nodiscard]] std::vector<std::string> problems() const {
+    std::vector<std::string> problems;
+    for (const auto& problem : repository().verify({}).problems)
+      problems.push_back(problem.kind + " " + problem.object + ": " + problem.text);
+    return problems;
+  }
+  /// What lies in the repository's folder.
+  [[nodiscard]] std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / "r.ramcdb"))
+      names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+ private:
+  TempFolder folder_;
+};
+
+struct LargeMesh {
+  const char* name;
+  TestMesh mesh;
+};
+
+/// Every second vertex of a soup is named by other faces, too: no order in them at all.
+TestMesh tangle() {
+  TestMesh mesh = sphere(1500);
+  std::uint32_t x = 1;
+  for (std::size_t f = 0; f < mesh.faces.size(); f += 3)
+    for (std::uint32_t& v : mesh.faces[f])
+      v = (x = x * 1664525 + 1013904223) % static_cast<std::uint32_t>(mesh.positions.size());
+  return mesh;
+}
+
+TestMesh only_vertices() {
+  TestMesh mesh = sphere(3000);
+  mesh.faces.clear();
+  return mesh;
+}
+
+/// One face of ten gone, one of ten turned over.
+TestMesh torn() {
+  TestMesh mesh = torus(4000), out{mesh.positions, {}};
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    if (f % 10 == 3) continue;
+    if (f % 10 == 7) std::swap(mesh.faces[f][0], mesh.faces[f][1]);
+    out.faces.push_back(mesh.faces[f]);
+  }
+  return out;
+}
+
+/// Sheets that meet along lines of edges, three and four at a time, and in single vertices.
+TestMesh sheets() {
+  constexpr std::uint32_t kSide = 40;
+  TestMesh mesh;
+  const auto add = [&](const std::function<Point(double, double)>& place) {
+    std::vector<std::uint32_t> vertex;
+    for (std::uint32_t y = 0; y <= kSide; ++y)
+      for (std::uint32_t x = 0; x <= kSide; ++x) {
+        const Point p = place(x, y);
+        const auto found = std::find(mesh.positions.begin(), mesh.positions.end(), p);
+        vertex.push_back(static_cast<std::uint32_t>(found - mesh.positions.begin()));
+        if (found == mesh.positions.end()) mesh.positions.push_back(p);
+      }
+    for (std::uint32_t y = 0; y < kSide; ++y)
+      for (std::uint32_t x = 0; x < kSide; ++x) {
+        const std::uint32_t a = y * (kSide + 1) + x, b = a + kSide + 1;
+        mesh.faces.push_back({vertex[a], vertex[a + 1], vertex[b + 1]});
+        mesh.faces.push_back({vertex[a], vertex[b + 1], vertex[b]});
+      }
+  };
+  add([](double x, double y) { return Point{x, y, 0}; });
+  add([](double x, double y) { return Point{x, 20, y}; });
+  add([](double x, double y) { return Point{x, 20 + y, y}; });
+  add([](double x, double y) { return Point{20, x, 7 + y}; });
+  return mesh;
+}
+
+std::vector<LargeMesh> large_meshes() {
+  return {{"sphere", sphere(6000)},
+          {"genus3", genus3(6000)},
+          {"terrain", terrain(60, 50)},
+          {"components", several_components()},
+          {"boxes", boxes(300)},
+          {"scan", scan(6000)},
+          {"moebius", moebius()},
+          {"two cubes on an edge", two_cubes_sharing_edge()},
+          {"hourglass", hourglass()},
+          {"three faces on an edge", three_faces_one_edge()},
+          {"degenerate and duplicate", degenerate_and_duplicate_faces()},
+          {"isolated vertices", isolated_vertices()},
+          {"only vertices", only_vertices()},
+          {"torn", torn()},
+          {"sheets", sheets()},
+          {"tangle", tangle()}};
+}
+
+void expect_same_mesh(const Snapshot& snapshot, const TestMesh& mesh) {
+  const auto expected = snapped(snapshot.lattice(), mesh.positions);
+  const RegionMesh got = whole(snapshot);
+  EXPECT_EQ(face_set(got), face_set(expected, mesh.faces));
+  const auto sorted = [](std::vector<LatticePoint> points) {
+    std::sort(points.begin(), points.end());
+    return points;
+  };
+  EXPECT_EQ(sorted(got.points), sorted(expected)) << "no vertex is lost or doubled";
+}
+
+TEST(LargeImport, InManyBlocksGivesTheSameMeshAndCounts) {
+  for (const LargeMesh& family : large_meshes()) {
+    SCOPED_TRACE(family.name);
+    const Imports imports;
+    const MeshInfo in_core = imports.import(family.mesh, "in core", {}).info;
+    const MeshInfo large = imports.import(family.mesh, "large", kLittle).info;
+    expect_same_mesh(imports.repository().snapshot("large"), family.mesh);
+    EXPECT_THAT(imports.problems(), testing::IsEmpty());
+    EXPECT_EQ(large.vertices, in_core.vertices);
+    EXPECT_EQ(large.faces, in_core.faces);
+    EXPECT_EQ(large.components, in_core.components);
+    EXPECT_EQ(large.boundary_loops, in_core.boundary_loops);
+    EXPECT_EQ(large.nonmanifold_edges, in_core.nonmanifold_edges);
+    EXPECT_EQ(large.nonmanifold_vertices, in_core.nonmanifold_vertices);
+    EXPECT_EQ(large.inconsistent_edges, in_core.inconsistent_edges);
+    EXPECT_EQ(large.degenerate_faces, in_core.degenerate_faces);
+    EXPECT_EQ(large.duplicate_faces, in_core.duplicate_faces);
+    EXPECT_EQ(large.isolated_vertices, in_core.isolated_vertices);
+  }
+}
+
+TEST(LargeImport, IsTheSameForAnyOrderOfTheFileAndAnyNumberOfThreads) {
+  const Imports imports;
+  const TestMesh mesh = scan(8000);
+  (void)imports.import(mesh, "as it is", kLittle);
+  (void)imports.import(shuffled(mesh, 7), "shuffled", kLittle);
+  (void)imports.import(mesh, "on one thread", kLittle, [](ImportOptions& options) { options.threads = 1; });
+  const auto expected = blobs_of(imports.repository(), "as it is");
+  EXPECT_EQ(blobs_of(imports.repository(), "on one thread"), expected);
+  EXPECT_EQ(blobs_of(imports.repository(), "shuffled"), expected);
+}
+
+TEST(LargeImport, CutsChartsAboutAsWellAsInCore) {
+  const Imports imports;
+  const TestMesh mesh = scan(150'000);
+  const auto options = [](ImportOptions& o) { o.chart_faces = 500; };
+  const MeshInfo in_core = imports.import(mesh, "in core", {}, options).info;
+  const MeshInfo large = imports.import(mesh, "large", 6 << 20, options).info;
+  const auto wires = [](const MeshInfo& info) {
+    return static_cast<double>(info.bytes.wires) / static_cast<double>(info.bytes.payload);
+  };
+  EXPECT_NE(large.wires, in_core.wires) << "it was cut in several blocks";
+  EXPECT_LT(wires(large), 1.1 * wires(in_core));
+  EXPECT_LT(large.chart_faces.p95, 1.1 * in_core.chart_faces.p95);
+  EXPECT_LT(static_cast<double>(large.charts), 1.1 * static_cast<double>(in_core.charts));
+}
+
+TEST(LargeImport, TakesEveryFormatThatIsReadInPieces) {
+  const Imports imports;
+  const TestMesh mesh = torus(3000);
+  for (const char* file : {"a.ply", "a.obj", "a.stl"}) {
+    SCOPED_TRACE(file);
+    write_test_mesh(mesh, imports / file);
+    const MeshInfo in_core = imports.import(file, std::string("in core ") + file, {}).info;
+    const ImportReport large = imports.import(file, std::string("large ") + file, kLittle);
+    EXPECT_EQ(large.info.vertices, mesh.positions.size()) << "a soup is welded";
+    EXPECT_EQ(large.vertices_welded, file == std::string("a.stl") ? 3 * mesh.faces.size() - mesh.positions.size() : 0);
+    EXPECT_EQ(large.info.lattice, in_core.lattice);
+    EXPECT_EQ(large.measured_error, imports.import(file, std::string("again ") + file, {}).measured_error);
+    expect_same_mesh(imports.repository().snapshot(std::string("large ") + file), {mesh.positions, mesh.faces});
+  }
+  EXPECT_THAT(imports.problems(), testing::IsEmpty());
+}
+
+TEST(LargeImport, KeepsPositionsToTheLastBit) {
+  for (const bool wide : {false, true}) {
+    const Imports imports;
+    TestMesh mesh = scan(3000);
+    for (Point& p : mesh.positions)
+      for (int a = 0; a < 3; ++a) p[a] = wide ? p[a] / 3 : static_cast<float>(p[a]);
+    const auto lossless = [](ImportOptions& options) { options.lossless = true; };
+    (void)imports.import(mesh, "large", kLittle, lossless);
+    const RegionMesh got = whole(imports.repository().snapshot("large"));
+    const auto sorted = [](std::vector<Point> points) {
+      std::ranges::sort(points, {}, [](const Point& p) { return std::tuple(p.x, p.y, p.z); });
+      return points;
+    };
+    EXPECT_EQ(sorted(got.exact), sorted(mesh.positions)) << wide;
+    EXPECT_THAT(imports.problems(), testing::IsEmpty());
+  }
+}
+
+std::string text_of_error(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(LargeImport, RefusesWhatItCannotTakeUnlessMemoryIsLeftOpen) {
+  const Imports imports;
+  std::ofstream(imports / "quad.obj") << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+  std::ofstream(imports / "group.obj") << "v 0 0 0\nv 1 0 0\nv 1 1 0\ng left\nf 1 2 3\n";
+  std::ofstream(imports / "color.ply")
+      << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+         "property float z\nproperty uchar red\nelement face 1\n"
+         "property list uchar int vertex_indices\nend_header\n"
+         "0 0 0 1\n1 0 0 2\n1 1 0 3\n3 0 1 2\n";
+  for (const char* file : {"quad.obj", "group.obj", "color.ply"}) {
+    EXPECT_THAT(text_of_error([&] { (void)imports.import(file, file, 1); }), testing::HasSubstr("--memory")) << file;
+    EXPECT_EQ(text_of_error([&] { (void)imports.import(file, file, {}); }), "") << file;
+  }
+}
+
+TEST(LargeImport, RefusesBrokenFilesInTheWordsOfOthers) {
+  const Imports imports;
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+      "property list uchar int vertex_indices\nend_header\n";
+  const std::vector<std::pair<const char*, std::string>> files = {
+      {"cut off.ply", ply + "0 0 0\n1 0 0\n"},
+      {"no such vertex.ply", ply + "0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n"},
+      {"not finite.ply", ply + "0 0 0\n1 0 nan\n0 1 0\n3 0 1 2\n"},
+      {"no such vertex.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n"},
+      {"no vertex.obj", "# nothing\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n"},
+      {"cut off.stl", "solid\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 1\n" + std::string(300, ' ')},
+  };
+  for (const auto& [file, text] : files) {
+    std::ofstream(imports / file, std::ios::binary) << text;
+    const std::string in_core = text_of_error([&] { (void)imports.import(file, file, {}); });
+    EXPECT_NE(in_core, "") << file;
+    EXPECT_EQ(text_of_error([&] { (void)imports.import(file, file, 1); }), in_core);
+  }
+}
+
+TEST(LargeImport, ThatIsCancelledAtAnyStageLeavesNothing) {
+  const Imports imports;
+  write_test_mesh(scan(3000), imports / "a.stl");
+  std::vector<std::string> stages;
+  (void)imports.import("a.stl", "first", kLittle, [&](ImportOptions& options) {
+    options.dry_run = true;
+    options.progress = [&](std::string_view stage, double) {
+      if (std::ranges::find(stages, stage) == stages.end()) stages.emplace_back(stage);
+    };
+  });
+  EXPECT_THAT(stages, testing::ElementsAre("read", "weld", "snap", "sort", "chartify", "join", "encode", "store"));
+  for (const std::string& stop : stages) {
+    const auto cancel = [&](ImportOptions& options) {
+      options.progress = [&](std::string_view stage, double) {
+        if (stage == stop) throw Error(Errc::cancelled, "stopped");
+      };
+    };
+    EXPECT_EQ(text_of_error([&] { (void)imports.import("a.stl", "first", kLittle, cancel); }), "stopped") << stop;
+    EXPECT_TRUE(imports.repository().meshes().empty()) << stop;
+  }
+  EXPECT_THAT(imports.files(), testing::Not(testing::Contains(testing::HasSubstr("scratch"))));
+  EXPECT_THAT(imports.problems(), testing::IsEmpty());
+}
+
+TEST(LargeImport, ThatIsKilledWhileItStoresIsSwept) {
+  const Imports imports;
+  const TestMesh mesh = scan(60'000);
+  write_test_mesh(mesh, imports / "a.ply");
+  db::test::ChildProcess child([&] {
+    (void)imports.import("a.ply", "first", kLittle, [](ImportOptions& options) {
+      options.progress = [](std::string_view stage, double done) {
+        if (stage == "store" && done > 0.5) ::raise(SIGKILL);
+      };
+    });
+  });
+  EXPECT_EQ(child.wait(), W_EXITCODE(0, SIGKILL));
+  EXPECT_TRUE(imports.repository().meshes().empty());
+  std::ofstream(imports / "r.ramcdb" / "scratch-killed") << "left by a killed process";
+  (void)imports.import("a.ply", "second", kLittle);
+  EXPECT_THAT(imports.problems(), testing::IsEmpty());
+  expect_same_mesh(imports.repository().snapshot("second"), mesh);
+  EXPECT_THAT(imports.files(), testing::Not(testing::Contains(testing::HasSubstr("scratch"))));
+}
+
+}  // namespace
+}  // namespace ramcdb::test
