@@ -331,7 +331,7 @@ std::optional<VersionDraft> draft_of(std::span<const PendingEdit> edits, Version
 std::optional<VersionId> publish_unmerged(const PendingEdit& edit, VersionId merged, const CommitOptions& options) {
   const Snapshot::Impl& base = edit.base();
   if (!common(charts_other_than(edit.parts, base.pages(), {}), edit.changes.touched).empty()) return std::nullopt;
-  EncodedEdit encoded = encode_on(base, edit, options.threads);
+  EncodedEdit encoded = encode_on(base, edit, options);
   if (encoded.pages.empty() || !encoded.pages.removed.empty() || has_new_ids(base.record(), encoded.record))
     return std::nullopt;
   share_blobs(encoded, base, merged);

@@ -150,7 +150,7 @@ Topology analyze_in(const chartify::IndexedMesh& mesh, const Scope& scope) {
   t.isolated_vertices = static_cast<std::uint64_t>(std::count(used.begin(), used.end(), false));
   const std::vector<Pass> passes = sorted_passes(mesh.faces, mesh.positions.size());
   for_each_edge(passes, [&](std::span<const Pass> edge) {
-    if (!scope.has(std::array{edge[0].low, edge[0].high})) return;
+    if (!scope.has(std::array{edge[0].low(), edge[0].high()})) return;
     const Passes by_faces(mesh, edge);
     t.nonmanifold_edges += by_faces.all() > 2;
     t.inconsistent_edges += by_faces.all() == 2 && by_faces.forward != 1;
