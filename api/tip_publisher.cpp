@@ -123,7 +123,7 @@ void publish_on_tip(const std::shared_ptr<db::Store>& store, VersionId base, con
 VersionId publish_nameless(const Snapshot::Impl& at, EncodedEdit edit, const CommitOptions& options) {
   const auto writer = at.store().writer();
   db::CommitInfo info;
-  info.branch.clear();
+  info.nameless = true;
   info.parents = {at.version()};
   info.author = options.author;
   info.message = options.message;

@@ -89,10 +89,7 @@ class Attempt : public Writer {
 
   VersionId publish(const CommitInfo& info) override {
     if (const auto earlier = catalogue_.published_by(info.attempt)) return *earlier;
-    if (!info.expected_tip && !info.branch.empty()) require_ref_name(info.branch);
-    if (const VersionId now = tip(info.branch); now != info.expected_tip)
-      throw Error(Errc::conflict, fmt::format("branch {} moved to version {}", info.branch, now.value),
-                  fmt::format("expected version {}", info.expected_tip.value), "check out again");
+    if (!info.nameless) require_tip(info);
     const CommitRecord record = record_of(info);
     put(record_key(version()), encode_record(record));
     fail_point("blobs.before");
@@ -106,12 +103,19 @@ class Attempt : public Writer {
   }
 
  private:
+  void require_tip(const CommitInfo& info) {
+    if (!info.expected_tip) require_ref_name(info.branch);
+    if (const VersionId now = tip(info.branch); now != info.expected_tip)
+      throw Error(Errc::conflict, fmt::format("branch {} moved to version {}", info.branch, now.value),
+                  fmt::format("expected version {}", info.expected_tip.value), "check out again");
+  }
+
   [[nodiscard]] Environment& environment() const { return store_->environment(); }
 
   [[nodiscard]] CommitRecord record_of(const CommitInfo& info) const {
     const auto now = std::chrono::system_clock::now().time_since_epoch();
     CommitRecord record;
-    record.info = {version(),    info.parents, info.branch,
+    record.info = {version(),    info.parents, info.nameless ? std::string() : info.branch,
                    info.author,  info.message, std::chrono::duration_cast<std::chrono::microseconds>(now).count(),
                    info.attempt, info.figures};
     record.roots = info.roots;

@@ -144,12 +144,13 @@ void Catalogue::insert(const CommitRecord& record) {
 
 void Catalogue::publish(const CommitRecord& record, VersionId expected_tip) {
   DatabaseTransaction transaction(database_);
-  const VersionId tip = refs().tip(record.info.branch);
+  const bool nameless = record.info.branch.empty();
+  const VersionId tip = nameless ? VersionId() : refs().tip(record.info.branch);
   if (tip != expected_tip)
     throw Error(Errc::conflict, fmt::format("branch {} moved to version {}", record.info.branch, tip.value),
                 fmt::format("expected version {}", expected_tip.value), "check out again");
   insert(record);
-  if (!record.info.branch.empty()) refs().set({record.info.branch, false, record.info.id});
+  if (!nameless) refs().set({record.info.branch, false, record.info.id});
   locks().sweep(record.info.time_us);
   fail_point("row.before_commit");
   transaction.commit();

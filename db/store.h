@@ -207,8 +207,9 @@ class BlobReader {
 };
 
 struct CommitInfo {
-  std::string branch = "main";  ///< empty: a version on no branch, to be had by its number only
-  VersionId expected_tip;       ///< tip of the branch that this commit was decided on (compare-and-swap)
+  std::string branch = "main";
+  bool nameless = false;   ///< instead: a version on no branch, to be had by its number only
+  VersionId expected_tip;  ///< tip of the branch that this commit was decided on (compare-and-swap)
   std::vector<VersionId>
       parents;  ///< as a rule {expected_tip}; any others make a new branch (expected_tip 0) from them
   std::string author;

@@ -134,6 +134,21 @@ TEST_F(Names, BranchesAndTagsShareNoName) {
                [&] { (void)empty.open()->create_tag("main", VersionId(1), false); });
 }
 
+TEST_F(Names, AVersionWithoutANameLeavesAllBranchesAndCanBeHadByItsNumber) {
+  const std::vector<Ref> before = store_->refs();
+  CommitInfo info;
+  info.nameless = true;
+  info.parents = ids({2});
+  info.attempt = new_attempt_id();
+  const VersionId version = store_->writer()->publish(info);
+  EXPECT_EQ(store_->refs(), before);
+  EXPECT_EQ(resolve("v6"), version.value);
+  EXPECT_EQ(store_->version(version).parents, ids({2}));
+  EXPECT_EQ(store_->check([](const Store::Problem& problem) { ADD_FAILURE() << problem.text; }) > 0, true);
+  EXPECT_EQ(publish(*store_, {}, "main"), VersionId(7));
+  EXPECT_EQ(store_->version(VersionId(7)).parents, ids({4}));
+}
+
 TEST_F(Names, WhatIsNoNameIsRefused) {
   const std::string long_name(201, 'a');
   for (const std::string& name :
