@@ -30,6 +30,7 @@ class TempFolder {
     static std::atomic<int> count{0};
     path_ = std::filesystem::temp_directory_path() /
             ("ramcdb-test-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
+    std::filesystem::remove_all(path_);  // of a killed process that had this number
     std::filesystem::create_directories(path_);
   }
   ~TempFolder() {
