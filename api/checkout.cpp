@@ -13,7 +13,6 @@
 #include "api/progress.h"
 #include "api/region_file.h"
 #include "api/sidecar.h"
-#include "api/streamed_export.h"
 #include "ramcdb/error.h"
 
 namespace ramcdb::detail {
@@ -30,24 +29,7 @@ CheckoutReport report_for(const Snapshot& snapshot, const RegionMesh& region, co
   report.charts = region.charts.size();
   report.faces = region.faces.size();
   report.vertices = region.points.size();
-  report.bytes_read = cost.bytes;
-  report.blobs_read = cost.blobs;
-  report.pages_read = cost.pages;
-  report.local_origin = written.local_origin;
-  for (const auto& dropped : written.left_out) report.left_out.push_back({dropped.what, dropped.count});
-  return report;
-}
-
-CheckoutReport report_for(const Snapshot& snapshot, const StreamedExport& written) {
-  CheckoutReport report;
-  report.revision = snapshot.version();
-  report.charts = written.charts;
-  report.faces = written.faces;
-  report.vertices = written.vertices;
-  report.bytes_read = written.cost.bytes;
-  report.blobs_read = written.cost.blobs;
-  report.pages_read = written.cost.pages;
-  for (const auto& dropped : written.left_out) report.left_out.push_back({dropped.what, dropped.count});
+  add_costs(report, cost, written);
   return report;
 }
 
@@ -58,12 +40,6 @@ bool is_untouched_checkout(const std::filesystem::path& file) {
   } catch (const Error&) {
     return false;
   }
-}
-
-void refuse_to_overwrite(const std::filesystem::path& file, const FileOptions& options) {
-  if (!options.overwrite && std::filesystem::exists(file) && !is_untouched_checkout(file))
-    throw Error(Errc::invalid_argument, "the file exists and is no unedited checkout", file.string(),
-                "choose another name, or --force to replace it");
 }
 
 /// A checked-out file as read back: the region it came from and what it moves.
@@ -146,6 +122,20 @@ void move_sidecar_on(EditedFile& edited, const std::filesystem::path& file, Vers
 
 }  // namespace
 
+void add_costs(CheckoutReport& report, const ReadCost& cost, const WrittenRegion& written) {
+  report.bytes_read = cost.bytes;
+  report.blobs_read = cost.blobs;
+  report.pages_read = cost.pages;
+  report.local_origin = written.local_origin;
+  for (const auto& dropped : written.left_out) report.left_out.push_back({dropped.what, dropped.count});
+}
+
+void refuse_to_overwrite(const std::filesystem::path& file, const FileOptions& options) {
+  if (!options.overwrite && std::filesystem::exists(file) && !is_untouched_checkout(file))
+    throw Error(Errc::invalid_argument, "the file exists and is no unedited checkout", file.string(),
+                "choose another name, or --force to replace it");
+}
+
 CheckoutReport checkout_region(db::Store& store, const std::filesystem::path& repository, const Snapshot& snapshot,
                                const std::vector<ChartId>& charts, const std::filesystem::path& file,
                                const FileOptions& options, std::uint32_t lock) {
@@ -156,7 +146,7 @@ CheckoutReport checkout_region(db::Store& store, const std::filesystem::path& re
   std::error_code ignored;
   std::filesystem::remove(sidecar_path(file), ignored);
   Sidecar sidecar;
-  const WrittenRegion written = write_region(snapshot, region, file, options, true, true);
+  const WrittenRegion written = write_region(snapshot, region, file, options);
   sidecar.local_origin = written.local_origin;
   sidecar.repository_id = store.id();
   sidecar.repository = repository;
@@ -168,23 +158,6 @@ CheckoutReport checkout_region(db::Store& store, const std::filesystem::path& re
   sidecar.lock = lock;
   sidecar.painted = options.paint != Paint::none;
   write_sidecar(file, sidecar);
-  CheckoutReport report = report_for(snapshot, region, cost, written);
-  report.seconds = seconds_since(start);
-  return report;
-}
-
-CheckoutReport export_mesh(const Snapshot& snapshot, const std::filesystem::path& file, const FileOptions& options) {
-  const auto start = Clock::now();
-  refuse_to_overwrite(file, options);
-  if (exports_in_pieces(snapshot, file, options)) {
-    CheckoutReport report = report_for(snapshot, export_in_pieces(snapshot, file, options));
-    report.seconds = seconds_since(start);
-    return report;
-  }
-  ReadCost cost;
-  const auto charts = snapshot.find({{WholeMesh{}}, 0}, &cost);
-  const RegionMesh region = snapshot.read_with_attributes(charts, options.threads, &cost);
-  const WrittenRegion written = write_region(snapshot, region, file, options, false, false);
   CheckoutReport report = report_for(snapshot, region, cost, written);
   report.seconds = seconds_since(start);
   return report;

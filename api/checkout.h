@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "api/region_file.h"
 #include "db/store.h"
 #include "ramcdb/repository.h"
 
@@ -13,6 +14,12 @@ namespace ramcdb::detail {
 CheckoutReport checkout_region(db::Store& store, const std::filesystem::path& repository, const Snapshot& snapshot,
                                const std::vector<ChartId>& charts, const std::filesystem::path& file,
                                const FileOptions& options, std::uint32_t lock);
+
+/// Throws invalid_argument for a file that exists and may hold somebody's work, unless `options` say so.
+void refuse_to_overwrite(const std::filesystem::path& file, const FileOptions& options);
+
+/// What reading cost and the file became, into a report.
+void add_costs(CheckoutReport& report, const ReadCost& cost, const WrittenRegion& written);
 
 /// Whole mesh -> file: see Repository::export_mesh.
 CheckoutReport export_mesh(const Snapshot& snapshot, const std::filesystem::path& file, const FileOptions& options);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cmath>
 
 #include "api/large_import.h"
 #include "api/lattice_choice.h"
@@ -11,6 +10,7 @@
 #include "api/mesh_file/mesh_file.h"
 #include "api/new_mesh.h"
 #include "api/progress.h"
+#include "api/snapping.h"
 #include "api/topology.h"
 #include "chartify/chartify.h"
 #include "ramcdb/error.h"
@@ -20,25 +20,16 @@ namespace {
 
 constexpr std::uint64_t kDefaultMemory = std::uint64_t{1} << 30;
 
-/// Snaps every position, and measures how far the farthest moved along an axis: none, where all come back as the
-/// numbers of `type` that they were. The file's positions become lattice points too, so that polygons are cut by these:
-/// the same however often a mesh goes out and in.
-std::vector<LatticePoint> snap_to(const Lattice& lattice, NumberType type, mesh_file::MeshData& data,
-                                  double& measured_error) {
+/// The file's positions become lattice points too, so that polygons are cut by these: the same however often a mesh
+/// goes out and in.
+std::vector<LatticePoint> snap_all(Snapping& snapping, mesh_file::MeshData& data) {
   std::vector<LatticePoint> points;
   points.reserve(data.positions.size());
-  bool all_come_back = true;
   for (Point& p : data.positions) {
-    const LatticePoint snapped = lattice.snap(p);
-    const Point q = lattice.position(snapped);
-    for (int a = 0; a < 3; ++a) {
-      measured_error = std::max(measured_error, std::abs(q[a] - p[a]));
-      all_come_back &= as_type(q[a], type) == p[a];
-    }
+    const LatticePoint snapped = snapping.snap(p);
     p = {static_cast<double>(snapped.x), static_cast<double>(snapped.y), static_cast<double>(snapped.z)};
     points.push_back(snapped);
   }
-  if (all_come_back) measured_error = 0;
   return points;
 }
 
@@ -78,21 +69,15 @@ std::uint64_t bytes_in_core(const std::filesystem::path& file) {
 ImportReport import_in_core(db::Store& store, const std::filesystem::path& file, const ImportOptions& options,
                             const std::string& name) {
   ImportReport report;
-  MeshRecord record;
   mesh_file::MeshData data =
       read_file_whole(file, options.weld, options.progress, report.vertices_welded, report.dropped);
   const NumberType type = type_of(data.positions);
-  record.lattice = choose_lattice(PositionSource::of(data.positions), type, options);
-  record.profile = options.profile == ChartProfile::fast ? codec::Profile::fast : codec::Profile::dense;
-  record.target_faces = options.chart_faces;
+  MeshRecord record = new_record(choose_lattice(PositionSource::of(data.positions), type, options), type, options);
   std::vector<Point> exact;
-  if (options.lossless) {
-    record.exact = type;
-    exact = data.positions;
-  }
-  std::vector<LatticePoint> points = snap_to(record.lattice, type, data, report.measured_error);
-  if (options.lossless) report.measured_error = 0;
-  if (report.measured_error == 0) record.written_as = type;
+  if (options.lossless) exact = data.positions;
+  Snapping snapping(record.lattice, type);
+  std::vector<LatticePoint> points = snap_all(snapping, data);
+  report.measured_error = note_error(record, snapping.error(), type);
   const mesh_file::Triangulation cut = mesh_file::triangulate(data);
   record.polygons = report.polygons = cut.polygons;
   report.polygons_as_fans = cut.fans;

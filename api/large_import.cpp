@@ -1,7 +1,6 @@
 #include "api/large_import.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <span>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "api/mesh_spool.h"
 #include "api/new_mesh.h"
 #include "api/scratch_file.h"
+#include "api/snapping.h"
 
 namespace ramcdb::detail {
 namespace {
@@ -35,40 +35,19 @@ PositionSource positions_of(const MeshSpool& mesh, const LargeWork& work) {
   return source;
 }
 
-/// Snaps all positions: sets the box of the lattice points that they become, and measures how far the farthest moves
-/// along an axis: none where all come back as the numbers that they were.
-void measure(const MeshSpool& mesh, MeshRecord& record, double& error, const LargeWork& work) {
-  const NumberType type = mesh.points.type();
-  bool all_come_back = true;
-  std::uint64_t seen = 0;
-  mesh.points.source().walk([&](std::span<const Point> some) {
-    for (const Point& p : some) {
-      const LatticePoint snapped = record.lattice.snap(p);
-      record.range.add(snapped);
-      const Point q = record.lattice.position(snapped);
-      for (int a = 0; a < 3; ++a) {
-        error = std::max(error, std::abs(q[a] - p[a]));
-        all_come_back &= as_type(q[a], type) == p[a];
-      }
-    }
-    work.report("snap", static_cast<double>(seen += some.size()) / static_cast<double>(mesh.points.size()));
-    return true;
-  });
-  if (all_come_back) error = 0;
-}
-
 /// The record as far as it is known before charts are cut.
 MeshRecord record_for(const MeshSpool& mesh, const ImportOptions& options, ImportReport& report,
                       const LargeWork& work) {
-  MeshRecord record;
   const NumberType type = mesh.points.type();
-  record.lattice = choose_lattice(positions_of(mesh, work), type, options);
-  record.profile = options.profile == ChartProfile::fast ? codec::Profile::fast : codec::Profile::dense;
-  record.target_faces = options.chart_faces;
-  if (options.lossless) record.exact = type;
-  measure(mesh, record, report.measured_error, work);
-  if (options.lossless) report.measured_error = 0;
-  if (report.measured_error == 0) record.written_as = type;
+  MeshRecord record = new_record(choose_lattice(positions_of(mesh, work), type, options), type, options);
+  Snapping snapping(record.lattice, type);
+  std::uint64_t seen = 0;
+  mesh.points.source().walk([&](std::span<const Point> some) {
+    for (const Point& p : some) record.range.add(snapping.snap(p));
+    work.report("snap", static_cast<double>(seen += some.size()) / static_cast<double>(mesh.points.size()));
+    return true;
+  });
+  report.measured_error = note_error(record, snapping.error(), type);
   record.vertices = mesh.vertices();
   record.faces = mesh.faces.size();
   return record;

@@ -79,6 +79,21 @@ void refuse_taken_name(db::Store& store, const ImportOptions& options, const std
   refuse_taken(store, base_of(store, options.branch), mesh_name(file, options));
 }
 
+MeshRecord new_record(const Lattice& lattice, NumberType type, const ImportOptions& options) {
+  MeshRecord record;
+  record.lattice = lattice;
+  record.profile = options.profile == ChartProfile::fast ? codec::Profile::fast : codec::Profile::dense;
+  record.target_faces = options.chart_faces;
+  if (options.lossless) record.exact = type;
+  return record;
+}
+
+double note_error(MeshRecord& record, double error, NumberType type) {
+  const double kept = record.exact ? 0 : error;
+  if (kept == 0) record.written_as = type;
+  return kept;
+}
+
 void note_topology(MeshRecord& record, const Topology& t) {
   record.nonmanifold_edges = t.nonmanifold_edges;
   record.nonmanifold_vertices = t.nonmanifold_vertices;

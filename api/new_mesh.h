@@ -19,6 +19,11 @@ namespace ramcdb::detail {
 /// Throws invalid_argument when the branch holds a mesh of that name.
 void refuse_taken_name(db::Store& store, const ImportOptions& options, const std::filesystem::path& file);
 
+/// The record of a mesh before anything of it is counted.
+[[nodiscard]] MeshRecord new_record(const Lattice& lattice, NumberType type, const ImportOptions& options);
+/// What snapping to the lattice moved a coordinate at most, as the mesh is kept: 0 where every bit is. Such a mesh is
+/// written as the numbers of `type` that it came as.
+[[nodiscard]] double note_error(MeshRecord& record, double error, NumberType type);
 void note_topology(MeshRecord& record, const Topology& topology);
 /// Counts charts, wires and corners, and gives the ids after theirs.
 void note_entries(MeshRecord& record, const NetEntries& entries);

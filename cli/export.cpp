@@ -20,6 +20,7 @@ struct ExportOptions {
   MeshAt which;
   OutputFileOptions output;
   unsigned threads = 1;
+  std::uint64_t memory = 0;
   OutputMode mode;
 };
 
@@ -33,6 +34,7 @@ CheckoutReport export_mesh(const ExportOptions& options) {
   const Repository repository = Repository::open(options.folder);
   FileOptions file = file_options_of(options.output);
   file.threads = options.threads;
+  file.memory = options.memory;
   ProgressBar bar("export", options.mode.quiet);
   file.progress = bar.callback();
   return repository.export_mesh(repository.snapshot(options.which.mesh, options.which.at), options.output.file, file);
@@ -57,6 +59,7 @@ void setup_export(CLI::App& app, Run& run) {
   add_mesh(verb, options->which);
   add_at(verb, options->which);
   add_threads(verb, options->threads);
+  add_memory(verb, options->memory);
   add_output_mode(verb, options->mode);
   add_example(verb, "ramcdb export statues.ramcdb --at v3 --color chart -o dragon.ply");
   verb.callback([options, &run] { run = [options] { return run_export(*options); }; });

@@ -9,7 +9,7 @@ namespace ramcdb::mesh_file::gltf {
 namespace {
 
 /// The number behind the last name stands for none.
-std::size_t number_of(const Attribute* attribute, std::size_t face) {
+std::size_t number_of(const AttributeView* attribute, std::size_t face) {
   if (!attribute) return 0;
   const double value = attribute->values[face];
   return value >= 0 ? static_cast<std::size_t>(value) : attribute->info.names.size();
@@ -17,7 +17,8 @@ std::size_t number_of(const Attribute* attribute, std::size_t face) {
 
 class Grouper {
  public:
-  Grouper(const MeshOutput& mesh, const Vertices& vertices, const Attribute* objects, const Attribute* materials)
+  Grouper(const MeshOutput& mesh, const Vertices& vertices, const AttributeView* objects,
+          const AttributeView* materials)
       : corners_(vertices.of_corner.empty() ? mesh.corners : std::span<const std::uint32_t>(vertices.of_corner)),
         vertex_count_(vertices.count),
         object_(objects),
@@ -122,7 +123,7 @@ class Grouper {
 
   std::span<const std::uint32_t> corners_;
   std::size_t vertex_count_;
-  const Attribute *object_, *material_;
+  const AttributeView *object_, *material_;
   std::map<std::pair<std::size_t, std::size_t>, std::uint32_t> part_of_;
   std::vector<std::pair<std::size_t, std::size_t>> keys_;
   std::vector<std::size_t> counts_, firsts_;
@@ -132,8 +133,8 @@ class Grouper {
 
 }  // namespace
 
-Groups group_faces(const MeshOutput& mesh, const Vertices& vertices, const Attribute* objects,
-                   const Attribute* materials, DroppedCounter& dropped) {
+Groups group_faces(const MeshOutput& mesh, const Vertices& vertices, const AttributeView* objects,
+                   const AttributeView* materials, DroppedCounter& dropped) {
   Grouper grouper(mesh, vertices, objects, materials);
   if (mesh.face_sizes.empty())
     return grouper.run(

@@ -10,13 +10,13 @@
 namespace ramcdb::mesh_file::gltf {
 namespace {
 
-bool all_floats(const Attribute& attribute) {
+bool all_floats(const AttributeView& attribute) {
   const NumberRange range = range_of(NumberType::float32);
   return std::all_of(attribute.values.begin(), attribute.values.end(),
                      [&](double value) { return range.holds(value); });
 }
 
-bool too_large(const Attribute& attribute) {
+bool too_large(const AttributeView& attribute) {
   return std::any_of(attribute.values.begin(), attribute.values.end(),
                      [](double value) { return std::isfinite(value) && std::abs(value) > NumberRange::kMostFloat; });
 }
@@ -24,7 +24,7 @@ bool too_large(const Attribute& attribute) {
 bool is_small(NumberType type) { return !is_float(type) && size_of(type) <= 2; }
 
 /// The type that an attribute has in the file, unless glTF wants another; nothing: there is none that holds it.
-std::optional<NumberType> plain_type(const Attribute& attribute) {
+std::optional<NumberType> plain_type(const AttributeView& attribute) {
   const NumberType type = attribute.info.type;
   if (is_small(type)) return type;
   if (is_float(type)) return too_large(attribute) ? std::nullopt : std::optional(NumberType::float32);
@@ -42,7 +42,7 @@ std::string custom_name(const std::string& name) {
 }  // namespace
 
 Columns::Columns(const MeshOutput& mesh, DroppedCounter& dropped) : dropped_(dropped) {
-  for (const Attribute& attribute : mesh.attributes)
+  for (const AttributeView& attribute : mesh.attributes)
     if (attribute.info.of == AttributeOf::face)
       place_of_face(attribute);
     else
@@ -59,7 +59,7 @@ Columns::Columns(const MeshOutput& mesh, DroppedCounter& dropped) : dropped_(dro
   }
 }
 
-void Columns::place_of_face(const Attribute& attribute) {
+void Columns::place_of_face(const AttributeView& attribute) {
   const AttributeInfo& info = attribute.info;
   const bool named = info.components == 1 && !info.names.empty();
   if (named && info.meaning == Meaning::material && !materials_)
@@ -70,7 +70,7 @@ void Columns::place_of_face(const Attribute& attribute) {
     drop_attribute(dropped_, attribute);
 }
 
-void Columns::place(const Attribute& attribute) {
+void Columns::place(const AttributeView& attribute) {
   const AttributeInfo& info = attribute.info;
   if (!info.names.empty()) drop_names(dropped_, attribute);
   const bool holds = !too_large(attribute);
@@ -87,7 +87,7 @@ void Columns::place(const Attribute& attribute) {
   }
 }
 
-bool Columns::place_custom(const Attribute& attribute) {
+bool Columns::place_custom(const AttributeView& attribute) {
   const AttributeInfo& info = attribute.info;
   const auto type = plain_type(attribute);
   const bool matrix = info.components == 9 || info.components == 16;
@@ -104,7 +104,7 @@ bool Columns::place_custom(const Attribute& attribute) {
   return add(attribute, custom_name(info.name), *type, info.components);
 }
 
-bool Columns::add(const Attribute& attribute, std::string name, NumberType type, std::size_t components) {
+bool Columns::add(const AttributeView& attribute, std::string name, NumberType type, std::size_t components) {
   const std::string wanted = name;
   const auto taken = [&] {
     return std::any_of(all_.begin(), all_.end(), [&](const OutColumn& column) { return column.name == name; });
@@ -119,15 +119,15 @@ bool Columns::add(const Attribute& attribute, std::string name, NumberType type,
   return true;
 }
 
-void Columns::number(std::string_view word, std::string_view base, std::vector<const Attribute*>& attributes) {
+void Columns::number(std::string_view word, std::string_view base, std::vector<const AttributeView*>& attributes) {
   // "texture_2" stands behind "texture_1"; those of other names behind all.
-  std::stable_sort(attributes.begin(), attributes.end(), [&](const Attribute* a, const Attribute* b) {
+  std::stable_sort(attributes.begin(), attributes.end(), [&](const AttributeView* a, const AttributeView* b) {
     constexpr auto kLast = static_cast<std::size_t>(-1);
     return number_behind(a->info.name, base, true).value_or(kLast) <
            number_behind(b->info.name, base, true).value_or(kLast);
   });
   for (std::size_t i = 0; i < attributes.size(); ++i) {
-    const Attribute& attribute = *attributes[i];
+    const AttributeView& attribute = *attributes[i];
     const AttributeInfo& info = attribute.info;
     const bool color = info.meaning == Meaning::color;
     const bool integer = color && is_unsigned_small(info.type);
@@ -140,8 +140,8 @@ void Columns::number(std::string_view word, std::string_view base, std::vector<c
   }
 }
 
-std::vector<const Attribute*> Columns::of_corners() const {
-  std::vector<const Attribute*> attributes;
+std::vector<const AttributeView*> Columns::of_corners() const {
+  std::vector<const AttributeView*> attributes;
   for (const OutColumn& column : all_)
     if (column.attribute && column.attribute->info.of == AttributeOf::corner) attributes.push_back(column.attribute);
   return attributes;

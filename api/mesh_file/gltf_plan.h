@@ -28,7 +28,7 @@ struct Vertices {
 };
 
 /// Copies vertices whose corners have different values of one of `attributes`, which are of corners.
-[[nodiscard]] Vertices split_vertices(const MeshOutput& mesh, const std::vector<const Attribute*>& attributes,
+[[nodiscard]] Vertices split_vertices(const MeshOutput& mesh, const std::vector<const AttributeView*>& attributes,
                                       DroppedCounter& dropped);
 
 /// Triangles of one object that have one material.
@@ -51,13 +51,13 @@ struct Groups {
 
 /// Cuts polygons, and puts the triangles in order. Objects get vertices of their own where no vertex lies between those
 /// of another; else all have all, so that each vertex is written once.
-[[nodiscard]] Groups group_faces(const MeshOutput& mesh, const Vertices& vertices, const Attribute* objects,
-                                 const Attribute* materials, DroppedCounter& dropped);
+[[nodiscard]] Groups group_faces(const MeshOutput& mesh, const Vertices& vertices, const AttributeView* objects,
+                                 const AttributeView* materials, DroppedCounter& dropped);
 
 /// An attribute's numbers as they are written, each vertex at a multiple of four bytes.
 struct OutColumn {
   std::string name;
-  const Attribute* attribute = nullptr;  ///< null: vertex ids
+  const AttributeView* attribute = nullptr;  ///< null: vertex ids
   NumberType type = NumberType::float32;
   std::size_t components = 0;
   bool normalized = false;  ///< integers that stand for 0..1
@@ -74,29 +74,29 @@ class Columns {
   Columns(const MeshOutput& mesh, DroppedCounter& dropped);
 
   [[nodiscard]] const std::vector<OutColumn>& all() const { return all_; }
-  [[nodiscard]] const Attribute* objects() const { return objects_; }
-  [[nodiscard]] const Attribute* materials() const { return materials_; }
-  [[nodiscard]] std::vector<const Attribute*> of_corners() const;
+  [[nodiscard]] const AttributeView* objects() const { return objects_; }
+  [[nodiscard]] const AttributeView* materials() const { return materials_; }
+  [[nodiscard]] std::vector<const AttributeView*> of_corners() const;
   /// Adds a mask for each column that some vertices have no value of: glTF has no number that says so.
   void add_masks(const Vertices& vertices);
 
  private:
-  void place(const Attribute& attribute);
-  void place_of_face(const Attribute& attribute);
-  bool place_custom(const Attribute& attribute);
-  bool add(const Attribute& attribute, std::string name, NumberType type, std::size_t components);
-  void number(std::string_view word, std::string_view base, std::vector<const Attribute*>& attributes);
+  void place(const AttributeView& attribute);
+  void place_of_face(const AttributeView& attribute);
+  bool place_custom(const AttributeView& attribute);
+  bool add(const AttributeView& attribute, std::string name, NumberType type, std::size_t components);
+  void number(std::string_view word, std::string_view base, std::vector<const AttributeView*>& attributes);
 
   DroppedCounter& dropped_;
   std::vector<OutColumn> all_;
-  std::vector<const Attribute*> textures_, colors_;
-  const Attribute *objects_ = nullptr, *materials_ = nullptr, *normal_ = nullptr;
+  std::vector<const AttributeView*> textures_, colors_;
+  const AttributeView *objects_ = nullptr, *materials_ = nullptr, *normal_ = nullptr;
 };
 
 /// The number of an attribute's column at a written vertex; NaN: there is none.
 [[nodiscard]] inline double attribute_number(const OutColumn& column, const Vertices& vertices, std::size_t i,
                                              std::size_t component) {
-  const Attribute& attribute = *column.attribute;
+  const AttributeView& attribute = *column.attribute;
   std::size_t at = vertices.vertex(i);
   if (attribute.info.of == AttributeOf::corner) {
     if (vertices.corner[i] == kNoCorner) return std::numeric_limits<double>::quiet_NaN();

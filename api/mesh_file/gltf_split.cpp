@@ -11,7 +11,7 @@ namespace {
 /// glTF knows no corners: a vertex has one value of everything.
 class Splitter {
  public:
-  Splitter(const MeshOutput& mesh, const std::vector<const Attribute*>& attributes)
+  Splitter(const MeshOutput& mesh, const std::vector<const AttributeView*>& attributes)
       : mesh_(mesh), attributes_(attributes) {}
 
   Vertices run() {
@@ -41,7 +41,7 @@ class Splitter {
 
   [[nodiscard]] bool same(std::uint32_t a, std::uint32_t b) const {
     if (a == b) return true;
-    return std::all_of(attributes_.begin(), attributes_.end(), [&](const Attribute* attribute) {
+    return std::all_of(attributes_.begin(), attributes_.end(), [&](const AttributeView* attribute) {
       const std::size_t n = attribute->info.components;
       const double* values = attribute->values.data();
       return std::equal(values + a * n, values + (a + 1) * n, values + b * n, [](double x, double y) {
@@ -56,7 +56,7 @@ class Splitter {
       h = (h ^ word) * 0x9e3779b97f4a7c15U;
       h ^= h >> 29U;
     };
-    for (const Attribute* attribute : attributes_)
+    for (const AttributeView* attribute : attributes_)
       for (std::size_t k = 0; k < attribute->info.components; ++k) {
         const double x = attribute->values[std::size_t{c} * attribute->info.components + k];
         mix(x != x ? 1 : std::bit_cast<std::uint64_t>(x));
@@ -83,14 +83,14 @@ class Splitter {
   }
 
   const MeshOutput& mesh_;
-  const std::vector<const Attribute*>& attributes_;
+  const std::vector<const AttributeView*>& attributes_;
   std::vector<std::uint32_t> source_, corner_, of_corner_;
   std::unordered_map<std::uint64_t, std::uint32_t> copies_;  ///< looked up only
 };
 
 }  // namespace
 
-Vertices split_vertices(const MeshOutput& mesh, const std::vector<const Attribute*>& attributes,
+Vertices split_vertices(const MeshOutput& mesh, const std::vector<const AttributeView*>& attributes,
                         DroppedCounter& dropped) {
   Vertices vertices;
   vertices.count = mesh.positions.size();

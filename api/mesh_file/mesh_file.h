@@ -105,6 +105,21 @@ struct FaceColor {
   std::uint8_t r = 0, g = 0, b = 0;
 };
 
+/// An attribute whose numbers lie elsewhere.
+struct AttributeView {
+  AttributeInfo info;
+  std::span<const double> values;  ///< as of Attribute
+
+  AttributeView(const Attribute& attribute) : info(attribute.info), values(attribute.values) {}
+  AttributeView(AttributeInfo of, std::span<const double> numbers) : info(std::move(of)), values(numbers) {}
+  [[nodiscard]] std::size_t count() const { return values.size() / info.components; }
+};
+
+struct AttributeViews : std::vector<AttributeView> {
+  using vector::vector;
+  AttributeViews(const std::vector<Attribute>& attributes) : vector(attributes.begin(), attributes.end()) {}
+};
+
 /// A mesh to write; the spans must outlive the call.
 struct MeshOutput {
   std::span<const Point> positions;
@@ -113,10 +128,13 @@ struct MeshOutput {
   Scalar scalar = Scalar::float32;
   std::span<const std::uint64_t> vertex_ids;  ///< PLY and glTF only; may be empty
   std::span<const FaceColor> face_colors;     ///< PLY and OFF; may be empty
-  std::span<const Attribute> attributes;      ///< what the format cannot hold is left out and counted in the result
+  AttributeViews attributes;                  ///< what the format cannot hold is left out and counted in the result
   std::span<const std::string> references;    ///< OBJ and PLY
   Point origin;                               ///< glTF of float64: a translation to try, before others
 };
+
+/// All that a file held, to be written again; `mesh` must outlive it.
+[[nodiscard]] MeshOutput output_of(const MeshData& mesh, Scalar scalar);
 
 /// Writes beside the file and renames into place, so that a failure leaves what was there. Text numbers are the
 /// shortest that read back as the same number of the scalar. STL is binary; PLY is binary little-endian unless `ascii`;

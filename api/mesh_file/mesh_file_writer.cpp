@@ -20,7 +20,7 @@ class OutputCheck {
     check_faces();
     check_count("ids", mesh_.vertex_ids.size(), mesh_.positions.size(), "vertices");
     check_count("colours", mesh_.face_colors.size(), face_count(mesh_), "faces");
-    for (const Attribute& attribute : mesh_.attributes) check_attribute(attribute);
+    for (const AttributeView& attribute : mesh_.attributes) check_attribute(attribute);
   }
 
  private:
@@ -56,7 +56,7 @@ class OutputCheck {
     if (count && count != expected) throw refuse(fmt::format("{} {} for {} {}", count, what, expected, of));
   }
 
-  void check_attribute(const Attribute& attribute) const {
+  void check_attribute(const AttributeView& attribute) const {
     const AttributeInfo& info = attribute.info;
     const auto refuse_it = [&](std::string_view what) {
       return refuse(fmt::format("attribute '{}' {}", shown(info.name), what));
@@ -86,6 +86,18 @@ class OutputCheck {
 };
 
 }  // namespace
+
+MeshOutput output_of(const MeshData& mesh, Scalar scalar) {
+  MeshOutput out;
+  out.positions = mesh.positions;
+  out.corners = mesh.corners;
+  out.face_sizes = mesh.face_sizes;
+  out.scalar = scalar;
+  out.vertex_ids = mesh.vertex_ids;
+  out.attributes = mesh.attributes;
+  out.references = mesh.references;
+  return out;
+}
 
 std::vector<Dropped> write_mesh(const std::filesystem::path& file, Format format, const MeshOutput& mesh, bool ascii) {
   OutputCheck(file, format, mesh).run();

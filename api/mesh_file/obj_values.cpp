@@ -11,7 +11,7 @@ namespace {
 /// Which values are equal, bit by bit, so that -0 is not 0: a hash table of lines, half empty at least.
 class KnownLines {
  public:
-  KnownLines(const Attribute& attribute, std::vector<std::size_t>& values)
+  KnownLines(const AttributeView& attribute, std::vector<std::size_t>& values)
       : numbers_(attribute.values), components_(attribute.info.components), values_(values), slots_(1024) {}
 
   /// The line of value i, which is added if there is none yet. From 1.
@@ -70,7 +70,7 @@ std::string obj_name(std::string_view name) {
 
 }  // namespace
 
-CornerLines::CornerLines(const Attribute& attribute, const MeshOutput& mesh, DroppedCounter& dropped)
+CornerLines::CornerLines(const AttributeView& attribute, const MeshOutput& mesh, DroppedCounter& dropped)
     : attribute_(&attribute), lines_(attribute.count()) {
   const bool of_corners = attribute.info.of == AttributeOf::corner;
   std::vector<bool> seen(attribute.count());
@@ -98,7 +98,7 @@ void CornerLines::write(NewFile& out, std::string_view keyword) const {
   }
 }
 
-NameLines::NameLines(const Attribute& attribute, std::string_view keyword, DroppedCounter& dropped)
+NameLines::NameLines(const AttributeView& attribute, std::string_view keyword, DroppedCounter& dropped)
     : attribute_(attribute), keyword_(keyword) {
   std::uint64_t changed = 0;
   for (const std::string& name : attribute.info.names) {

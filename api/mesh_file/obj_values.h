@@ -13,7 +13,7 @@ class CornerLines {
  public:
   CornerLines() = default;
   /// Of an attribute of vertices or corners, with 2 or 3 components. Values of vertices without a face are counted.
-  CornerLines(const Attribute& attribute, const MeshOutput& mesh, DroppedCounter& dropped);
+  CornerLines(const AttributeView& attribute, const MeshOutput& mesh, DroppedCounter& dropped);
 
   [[nodiscard]] bool empty() const { return !attribute_; }
   void write(NewFile& out, std::string_view keyword) const;
@@ -23,7 +23,7 @@ class CornerLines {
   }
 
  private:
-  const Attribute* attribute_ = nullptr;
+  const AttributeView* attribute_ = nullptr;
   std::vector<std::uint32_t> lines_;  ///< per corner or vertex
   std::vector<std::size_t> values_;   ///< per line the value that it shows
 };
@@ -31,11 +31,11 @@ class CornerLines {
 /// Names of faces as OBJ writes them, switched where they change. The mirror of NameSwitch.
 class NameLines {
  public:
-  NameLines(const Attribute& attribute, std::string_view keyword, DroppedCounter& dropped);
+  NameLines(const AttributeView& attribute, std::string_view keyword, DroppedCounter& dropped);
   void write(NewFile& out, std::size_t face);
 
  private:
-  const Attribute& attribute_;
+  const AttributeView& attribute_;
   std::string_view keyword_;
   std::vector<std::string> names_;
   std::string_view current_;  ///< no name until the first line

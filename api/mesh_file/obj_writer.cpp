@@ -12,7 +12,7 @@ namespace {
 class ObjWriter {
  public:
   ObjWriter(NewFile& out, const MeshOutput& mesh, DroppedCounter& dropped) : out_(out), mesh_(mesh), dropped_(dropped) {
-    for (const Attribute& attribute : mesh.attributes)
+    for (const AttributeView& attribute : mesh.attributes)
       if (!place(attribute)) drop_attribute(dropped, attribute);
   }
 
@@ -33,7 +33,7 @@ class ObjWriter {
 
  private:
   /// False: OBJ has no place for it, or another has taken it.
-  bool place(const Attribute& attribute) {
+  bool place(const AttributeView& attribute) {
     const AttributeInfo& info = attribute.info;
     return info.of == AttributeOf::face                                       ? place_of_face(attribute)
            : info.meaning == Meaning::color && info.of == AttributeOf::vertex ? place_color(attribute)
@@ -43,7 +43,7 @@ class ObjWriter {
                                                                      : false;
   }
 
-  bool place_color(const Attribute& attribute) {
+  bool place_color(const AttributeView& attribute) {
     if (color_ || attribute.info.components < 3) return false;
     color_ = &attribute;
     if (attribute.info.components > 3)
@@ -51,13 +51,13 @@ class ObjWriter {
     return true;
   }
 
-  bool place_lines(CornerLines& lines, const Attribute& attribute) {
+  bool place_lines(CornerLines& lines, const AttributeView& attribute) {
     if (!lines.empty()) return false;
     lines = CornerLines(attribute, mesh_, dropped_);
     return true;
   }
 
-  bool place_of_face(const Attribute& attribute) {
+  bool place_of_face(const AttributeView& attribute) {
     const AttributeInfo& info = attribute.info;
     if (info.components != 1) return false;
     if (info.name == "smoothing" && info.type == NumberType::uint32) {
@@ -70,7 +70,7 @@ class ObjWriter {
     return info.name == "object" ? place_names(objects_, attribute, "o") : place_names(groups_, attribute, "g");
   }
 
-  bool place_names(std::optional<NameLines>& lines, const Attribute& attribute, std::string_view keyword) {
+  bool place_names(std::optional<NameLines>& lines, const AttributeView& attribute, std::string_view keyword) {
     if (lines) return false;
     lines.emplace(attribute, keyword, dropped_);
     return true;
@@ -126,10 +126,10 @@ class ObjWriter {
   NewFile& out_;
   const MeshOutput& mesh_;
   DroppedCounter& dropped_;
-  const Attribute* color_ = nullptr;
+  const AttributeView* color_ = nullptr;
   CornerLines textures_, normals_;
   std::optional<NameLines> materials_, groups_, objects_;
-  const Attribute* smoothing_ = nullptr;
+  const AttributeView* smoothing_ = nullptr;
   std::uint32_t smoothing_group_ = 0;
 };
 

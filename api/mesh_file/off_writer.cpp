@@ -10,8 +10,8 @@ namespace {
 class OffWriter {
  public:
   OffWriter(NewFile& out, const MeshOutput& mesh, DroppedCounter& dropped) : out_(out), mesh_(mesh) {
-    for (const Attribute& attribute : mesh.attributes)
-      if (const Attribute** place = place_of(attribute.info); place && !*place)
+    for (const AttributeView& attribute : mesh.attributes)
+      if (const AttributeView** place = place_of(attribute.info); place && !*place)
         *place = &attribute;
       else
         drop_attribute(dropped, attribute);
@@ -37,7 +37,7 @@ class OffWriter {
 
  private:
   /// Where an attribute belongs; nullptr: nowhere.
-  const Attribute** place_of(const AttributeInfo& info) {
+  const AttributeView** place_of(const AttributeInfo& info) {
     const bool color = info.meaning == Meaning::color && (info.components == 3 || info.components == 4);
     if (info.of == AttributeOf::face) return color && mesh_.face_colors.empty() ? &face_color_ : nullptr;
     if (info.of != AttributeOf::vertex) return nullptr;
@@ -51,7 +51,7 @@ class OffWriter {
   void write_vertex(std::size_t v) {
     write_point(out_, mesh_.positions[v], number_type(mesh_.scalar));
     bool any = false;
-    for (const Attribute* attribute : {normal_, color_, texture_}) any |= attribute && !is_none(*attribute, v);
+    for (const AttributeView* attribute : {normal_, color_, texture_}) any |= attribute && !is_none(*attribute, v);
     if (any) {
       if (normal_) write_value(*normal_, v);
       if (color_) write_color(*color_, v);
@@ -60,7 +60,7 @@ class OffWriter {
     out_.text("\n");
   }
 
-  void write_value(const Attribute& attribute, std::size_t i) {
+  void write_value(const AttributeView& attribute, std::size_t i) {
     const std::size_t n = attribute.info.components;
     for (std::size_t k = 0; k < n; ++k) {
       out_.text(" ");
@@ -69,7 +69,7 @@ class OffWriter {
   }
 
   /// Bytes as whole numbers, all others from 0.0 to 1.0.
-  void write_color(const Attribute& attribute, std::size_t i) {
+  void write_color(const AttributeView& attribute, std::size_t i) {
     const NumberType type = attribute.info.type;
     if (type == NumberType::uint8) return write_value(attribute, i);
     const std::size_t n = attribute.info.components;
@@ -90,7 +90,7 @@ class OffWriter {
 
   NewFile& out_;
   const MeshOutput& mesh_;
-  const Attribute *color_ = nullptr, *normal_ = nullptr, *texture_ = nullptr, *face_color_ = nullptr;
+  const AttributeView *color_ = nullptr, *normal_ = nullptr, *texture_ = nullptr, *face_color_ = nullptr;
 };
 
 }  // namespace

@@ -38,7 +38,7 @@ class PropertyNames {
 struct Column {
   std::string name;
   NumberType type = NumberType::float32;
-  const Attribute* attribute = nullptr;
+  const AttributeView* attribute = nullptr;
   std::size_t component = 0;
 
   [[nodiscard]] double value(std::size_t i) const {
@@ -48,7 +48,7 @@ struct Column {
 
 /// Texture coordinates of corners: a list that stands before this column of faces.
 struct Texcoord {
-  const Attribute* attribute = nullptr;
+  const AttributeView* attribute = nullptr;
   std::size_t before = 0;
 
   [[nodiscard]] bool at(std::size_t column) const { return attribute && column == before; }
@@ -120,7 +120,7 @@ class PlyWriter {
     if (!mesh.face_colors.empty())
       for (const char* name : {"red", "green", "blue"}) face_names_.unique(name);
     for (const char* name : kIdHalves) vertex_names_.unique(name);  // no attribute is to pass for ids
-    for (const Attribute& attribute : mesh.attributes) place(attribute);
+    for (const AttributeView& attribute : mesh.attributes) place(attribute);
     std::uint32_t most = 3;
     for (const std::uint32_t size : mesh.face_sizes) most = std::max(most, size);
     size_type_ = most <= kMostUchar ? NumberType::uint8 : NumberType::uint32;
@@ -141,7 +141,7 @@ class PlyWriter {
   static constexpr std::uint32_t kMostUchar = 255;
   static constexpr const char* kIdHalves[] = {"ramcdb_id_hi", "ramcdb_id_lo"};
 
-  void place(const Attribute& attribute) {
+  void place(const AttributeView& attribute) {
     const AttributeInfo& info = attribute.info;
     if (info.of == AttributeOf::corner) {
       if (texcoord_.attribute || info.meaning != Meaning::texture || info.components != 2 || !is_float(info.type))

@@ -29,8 +29,8 @@ bool is_facet_bytes(const AttributeInfo& info) {
 }  // namespace
 
 void write_stl(NewFile& out, const MeshOutput& mesh, DroppedCounter& dropped) {
-  const Attribute* bytes = nullptr;
-  for (const Attribute& attribute : mesh.attributes)
+  const AttributeView* bytes = nullptr;
+  for (const AttributeView& attribute : mesh.attributes)
     if (is_facet_bytes(attribute.info) && !bytes)
       bytes = &attribute;
     else

@@ -48,13 +48,13 @@ class FaceWalk {
 };
 
 /// The attribute is left out, or its names are.
-inline void drop_attribute(DroppedCounter& dropped, const Attribute& attribute) {
+inline void drop_attribute(DroppedCounter& dropped, const AttributeView& attribute) {
   constexpr std::string_view kOf[] = {"", "vertex", "corner", "face"};
   dropped.add(
       std::string(kOf[static_cast<std::size_t>(attribute.info.of)]) + " attribute '" + shown(attribute.info.name) + "'",
       attribute.count());
 }
-inline void drop_names(DroppedCounter& dropped, const Attribute& attribute) {
+inline void drop_names(DroppedCounter& dropped, const AttributeView& attribute) {
   dropped.add("names of attribute '" + shown(attribute.info.name) + "'", attribute.info.names.size());
 }
 
@@ -73,7 +73,7 @@ inline void drop_reference(DroppedCounter& dropped, std::string_view reference) 
 }
 
 /// Whether value i of the attribute is none: NaN in all components.
-[[nodiscard]] inline bool is_none(const Attribute& attribute, std::size_t i) {
+[[nodiscard]] inline bool is_none(const AttributeView& attribute, std::size_t i) {
   const auto value = std::span(attribute.values).subspan(i * attribute.info.components, attribute.info.components);
   return std::all_of(value.begin(), value.end(), [](double number) { return number != number; });
 }

@@ -107,16 +107,7 @@ TEST(ImportInto, AttributesAndPolygonsComeAlong) {
   Repository::create(folder / "r");
   Repository repository = Repository::open(folder / "r");
   const mesh_file::MeshData first = painted_grid(24);
-  const auto write = [&](const mesh_file::MeshData& data, const char* name) {
-    mesh_file::MeshOutput out;
-    out.positions = data.positions;
-    out.corners = data.corners;
-    out.face_sizes = data.face_sizes;
-    out.attributes = data.attributes;
-    out.scalar = mesh_file::Scalar::float64;
-    (void)mesh_file::write_mesh(folder / name, mesh_file::Format::ply, out);
-  };
-  write(first, "a.ply");
+  write_data(first, folder / "a.ply");
   ImportOptions options;
   options.name = "mesh";
   (void)repository.import(folder / "a.ply", options);
@@ -126,7 +117,7 @@ TEST(ImportInto, AttributesAndPolygonsComeAlong) {
   const std::string absent = "heat";
   for (Attribute& attribute : second.attributes)
     if (attribute.info.name == absent) attribute.info.name = "extra";
-  write(second, "b.ply");
+  write_data(second, folder / "b.ply");
   const ImportIntoReport report = repository.import_into("mesh", folder / "b.ply", {});
   EXPECT_EQ(report.commit.notes.attributes_missing, 1U);
   EXPECT_EQ(std::count_if(report.dropped.begin(), report.dropped.end(),

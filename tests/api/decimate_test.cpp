@@ -91,12 +91,7 @@ TEST(Decimate, WhatStaysKeepsItsValues) {
   Repository::create(folder / "r");
   Repository repository = Repository::open(folder / "r");
   const mesh_file::MeshData grid = painted_grid(30);
-  mesh_file::MeshOutput out;
-  out.positions = grid.positions;
-  out.corners = grid.corners;
-  out.face_sizes = grid.face_sizes;
-  out.attributes = grid.attributes;
-  (void)mesh_file::write_mesh(folder / "a.ply", mesh_file::Format::ply, out);
+  write_data(grid, folder / "a.ply", mesh_file::Scalar::float32);
   ImportOptions options;
   options.chart_faces = 400;
   (void)repository.import(folder / "a.ply", options);

@@ -219,12 +219,7 @@ TEST(Diff, VolumeIsNotSaidWhereAnOpenBorderMoved) {
 TEST(Diff, ClassesOfChartsWhoseValuesChanged) {
   TempRepository repository(sphere(100));
   const mesh_file::MeshData grid = painted_grid(40);
-  mesh_file::MeshOutput out;
-  out.positions = grid.positions;
-  out.corners = grid.corners;
-  out.face_sizes = grid.face_sizes;
-  out.attributes = grid.attributes;
-  (void)mesh_file::write_mesh(repository / "grid.ply", mesh_file::Format::ply, out);
+  write_data(grid, repository / "grid.ply", mesh_file::Scalar::float32);
   ImportOptions options;
   options.name = "grid";
   options.chart_faces = 500;

@@ -1,9 +1,11 @@
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <optional>
 
 #include "tests/api/blobs_of.h"
 #include "tests/api/numbered_edits.h"
+#include "tests/api/painted_grid.h"
 #include "tests/api/temp_repository.h"
 
 namespace ramcdb::test {
@@ -221,6 +223,43 @@ TEST(Export, OfTheFinestLatticeIsExact) {
   for (const char* name : {"out.ply", "out.obj"}) {
     (void)repository->export_mesh(snapshot, repository / name, {});
     EXPECT_TRUE(face_set_of_file(snapshot.lattice(), repository / name) == face_set(whole(snapshot))) << name;
+  }
+}
+
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(Export, WritesTheSameFileWithNoMemoryToSpeakOf) {
+  for (const auto& [name, mesh] : families()) {
+    TempRepository repository(mesh, 300);
+    const Snapshot snapshot = repository->snapshot();
+    for (const Paint paint : {Paint::none, Paint::version}) {
+      FileOptions options;
+      options.paint = paint;
+      (void)repository->export_mesh(snapshot, repository / "all.ply", options);
+      options.memory = 1;  // a chart at a time, all else in a file
+      (void)repository->export_mesh(snapshot, repository / "little.ply", options);
+      EXPECT_EQ(bytes_of(repository / "little.ply"), bytes_of(repository / "all.ply")) << name;
+    }
+    EXPECT_TRUE(face_set_of_file(snapshot.lattice(), repository / "little.ply") == face_set(whole(snapshot))) << name;
+  }
+}
+
+TEST(Export, OfPolygonsAndAttributesNeedsNoMemoryEither) {
+  for (const bool lossless : {false, true}) {
+    Painted repository(painted_grid(40), lossless);
+    const Snapshot snapshot = repository->snapshot();
+    for (const std::string ending : {"ply", "obj", "off", "stl", "glb"}) {
+      FileOptions options;
+      const CheckoutReport all = repository->export_mesh(snapshot, repository / ("all." + ending), options);
+      options.memory = 1;
+      const CheckoutReport little = repository->export_mesh(snapshot, repository / ("little." + ending), options);
+      EXPECT_EQ(little.vertices, all.vertices);
+      EXPECT_EQ(little.faces, all.faces);
+      EXPECT_EQ(bytes_of(repository / ("little." + ending)), bytes_of(repository / ("all." + ending))) << ending;
+    }
   }
 }
 

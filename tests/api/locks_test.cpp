@@ -53,11 +53,7 @@ class Locks : public ::testing::Test {
       if (region.keys[v].where != VertexKey::Where::chart) border.insert(rounded(now.position(region, v)));
     for (Point& p : data.positions)
       if (!border.contains(rounded(p))) p.z += 4 * now.lattice().step;
-    mesh_file::MeshOutput out;
-    out.positions = data.positions;
-    out.corners = data.corners;
-    out.scalar = mesh_file::Scalar::float64;
-    (void)mesh_file::write_mesh(repo_ / name, mesh_file::format_of(repo_ / name), out);
+    write_data(data, repo_ / name);
     return repo_ / name;
   }
 

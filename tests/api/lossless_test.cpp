@@ -354,10 +354,7 @@ TEST_F(Georeferenced, AnEditThereIsAnEditHere) {
   MeshData data = mesh_file::read_mesh(file);
   data.positions[7].z = as_float(data.positions[7].z + 0.25);
   const Point there = data.positions[7];
-  mesh_file::MeshOutput out;
-  out.positions = data.positions;
-  out.corners = data.corners;
-  (void)mesh_file::write_mesh(file, mesh_file::Format::ply, out);
+  write_data(data, file, mesh_file::Scalar::float32);
   EXPECT_EQ(repository_->commit_file(file, message("a quarter up")).vertices_moved, 1U);
   const Snapshot snapshot = repository_->snapshot();
   const LatticePoint wanted = snapshot.lattice().snap(

@@ -397,10 +397,7 @@ TEST_F(Merge, AFileWhoseBordersOthersCutStaysOneSurface) {
   for (int round = 1; round <= 3; ++round) {
     auto data = mesh_file::read_mesh(file);
     data.positions[vertex].z += 5 * repository_->snapshot().lattice().step;
-    mesh_file::MeshOutput out;
-    out.positions = data.positions;
-    out.corners = data.corners;
-    (void)mesh_file::write_mesh(file, mesh_file::Format::ply, out);
+    write_data(data, file, mesh_file::Scalar::float32);
     const CommitReport report = repository_->commit_file(file, options("mine"));
     EXPECT_TRUE(report.conflicts.empty());
     EXPECT_EQ(report.vertices_moved, 1U) << "round " << round;

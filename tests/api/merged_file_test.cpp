@@ -19,10 +19,7 @@ class MergedFile : public ::testing::Test {
     auto data = mesh_file::read_mesh(file_);
     const RegionMesh region = repository_->snapshot({}, "1").read({kChart});
     data.positions[inner_vertex(region, n)].z += steps * step();
-    mesh_file::MeshOutput out;
-    out.positions = data.positions;
-    out.corners = data.corners;
-    (void)mesh_file::write_mesh(file_, mesh_file::Format::ply, out);
+    write_data(data, file_, mesh_file::Scalar::float32);
   }
 
   /// Somebody else lifts one.

@@ -225,8 +225,8 @@ class PlainMerge {
       if (const std::uint64_t id = ours_.ids[v]; !in_theirs_.contains(id)) {
         if (!in_base_.contains(id))
           out_.add_vertex(id, ours_.points[v], ours_.color[v]);
-        else if (ours_.points[v] != base_.points[in_base_.at(id)])
-          contradict(id, "moved and removed");
+        else if (changed(ours_, v, in_base_.at(id)))
+          contradict(id, "changed and removed");
       }
     add_faces();
     if (!contradiction_.empty()) return std::nullopt;
@@ -242,12 +242,17 @@ class PlainMerge {
     contradiction_ +=
         what + (" near " + std::to_string(p.x) + "," + std::to_string(p.y) + "," + std::to_string(p.z)) + "; ";
   }
+  /// Whether a side moved or painted a vertex.
+  [[nodiscard]] bool changed(const Model& side, std::uint32_t v, std::uint32_t in_base) const {
+    const Model::Color &is = side.color[v], &was = base_.color[in_base];
+    return side.points[v] != base_.points[in_base] || (!is.empty() && is != was);
+  }
   void add_vertex_of_theirs(std::uint32_t v) {
     const std::uint64_t id = theirs_.ids[v];
     const auto b = in_base_.find(id), o = in_ours_.find(id);
     LatticePoint p = theirs_.points[v];
     if (b != in_base_.end() && o == in_ours_.end()) {  // removed by ours
-      if (p != base_.points[b->second]) contradict(id, "moved and removed");
+      if (changed(theirs_, v, b->second)) contradict(id, "changed and removed");
       return;
     }
     Model::Color c = theirs_.color[v];

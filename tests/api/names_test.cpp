@@ -100,10 +100,7 @@ TEST(Names, ACommitToABranchWithoutTheMeshIsRefused) {
   (void)repo->checkout_file(second, second.find({{WholeMesh{}}, 0}), repo / "part.ply", {});
   mesh_file::MeshData data = mesh_file::read_mesh(repo / "part.ply");
   for (Point& p : data.positions) p.z += 0.25;
-  mesh_file::MeshOutput out;
-  out.positions = data.positions;
-  out.corners = data.corners;
-  (void)mesh_file::write_mesh(repo / "part.ply", mesh_file::format_of(repo / "part.ply"), out);
+  write_data(data, repo / "part.ply", mesh_file::Scalar::float32);
   CommitOptions commit = message("lift");
   for (const char* branch : {"before", "nobody"}) {
     commit.branch = branch;

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "tests/api/oracle.h"
+#include "tests/api/oracle_checks.h"
 #include "tests/api/oracle_history.h"
 
 // Random edits of all kinds on branches, each checked against a plain mesh to which the same was done.
@@ -45,16 +46,6 @@ mesh_file::MeshData colored(const TestMesh& mesh) {
   return data;
 }
 
-void write_colored(const mesh_file::MeshData& data, const std::filesystem::path& file) {
-  mesh_file::MeshOutput out;
-  out.positions = data.positions;
-  out.corners = data.corners;
-  out.scalar = mesh_file::Scalar::float64;
-  out.vertex_ids = data.vertex_ids;
-  out.attributes = data.attributes;
-  (void)mesh_file::write_mesh(file, mesh_file::format_of(file), out);
-}
-
 /// An edit that was made and not committed yet.
 struct Work {
   std::string what, branch;
@@ -71,7 +62,7 @@ class Oracle {
       : family_(family), random_(seed), repository_(make(folder_)), colored_(seed % 2 == 0) {
     mesh_file::MeshData data = colored(family.make());
     if (!colored_) data.attributes.clear();
-    write_colored(data, folder_ / "input.ply");
+    write_data(data, folder_ / "input.ply");
     (void)repository_.import(folder_ / "input.ply", importing("mesh"));
     const Snapshot first = repository_.snapshot("mesh");
     Model model = model_of(whole(first));
@@ -281,7 +272,8 @@ class Oracle {
     for (const Triangle& t : faces)
       for (const std::uint32_t v : t) data.corners.push_back(place[v]);
     if (colored_) data.attributes = {color};
-    write_colored(data, file);
+    (void)mesh_file::write_mesh(file, mesh_file::format_of(file),
+                                mesh_file::output_of(data, mesh_file::Scalar::float64));
   }
 
   /// Faces that go at the region's outer border are refused, with the way out, and nothing is written.
@@ -314,7 +306,7 @@ class Oracle {
     EXPECT_TRUE(repository_.commit_file(work.file, options(work.branch)).nothing_changed) << what_;
   }
 
-  /// A file that was merged stays an edit of what it was checked out from: what it brought is not brought twice.
+  /// What a merged file brought is not brought twice.
   void commit_again(const Work& work) {
     CommitOptions committing = options(work.branch);
     committing.merge = true;
@@ -458,15 +450,15 @@ class Oracle {
     Model is = model_of(now);
     const auto same = SameMesh(expected, is).run();
     EXPECT_TRUE(same) << what_ << ": another mesh";
-    if (!same) explain(expected, is);
+    if (!same) explain(expected, is, what_);
     EXPECT_TRUE(face_set(is.points, is.faces) == face_set(expected.points, expected.faces)) << what_ << ": faces";
     EXPECT_TRUE(is.sorted_points() == expected.sorted_points()) << what_ << ": vertices";
     if (colored_) {
       const auto wanted = expected.known_colors(), have = is.known_colors();
       EXPECT_TRUE(std::includes(have.begin(), have.end(), wanted.begin(), wanted.end())) << what_ << ": colours";
     }
-    check_counts(after, is, expected);
-    check_charts(before, after, region);
+    expect_counts(after, is, expected, what_);
+    charts_.add(expect_charts(before, after, region, family_.chart_faces, what_));
     check_repository(after, branch);
     if (!same || after.version() == tip) return;
     for (std::uint32_t v = 0; v < is.ids.size(); ++v) is.ids[v] = expected.ids[(*same)[v]];
@@ -475,19 +467,6 @@ class Oracle {
     history_.add(after.version(), parents, std::move(is));
     tips_[branch] = after.version();
     ++done_;
-  }
-
-  void explain(const Model& expected, const Model& is) const {
-    std::cout << what_ << ": " << expected.points.size() << " vertices, " << expected.faces.size()
-              << " faces expected, " << is.points.size() << ", " << is.faces.size() << " there\n";
-    const auto wanted = expected.sorted_points(), have = is.sorted_points();
-    std::vector<LatticePoint> missing, other;
-    std::ranges::set_difference(wanted, have, std::back_inserter(missing));
-    std::ranges::set_difference(have, wanted, std::back_inserter(other));
-    for (std::size_t i = 0; i < std::min<std::size_t>(missing.size(), 10); ++i)
-      std::cout << "  missing " << missing[i].x << ' ' << missing[i].y << ' ' << missing[i].z << '\n';
-    for (std::size_t i = 0; i < std::min<std::size_t>(other.size(), 10); ++i)
-      std::cout << "  instead " << other[i].x << ' ' << other[i].y << ' ' << other[i].z << '\n';
   }
 
   void check_repository(const Snapshot& after, const std::string& branch) {
@@ -504,52 +483,6 @@ class Oracle {
       (void)repository_.export_mesh(after, folder_ / "export.ply", {});
       EXPECT_EQ(face_set_of_file(after.lattice(), folder_ / "export.ply"), face_set(whole(after))) << what_;
     }
-  }
-
-  void check_counts(const Snapshot& after, const Model& is, const Model& expected) {
-    const MeshInfo info = after.info();
-    const PageCounts pages(after);
-    const detail::Topology counted = is.topology(), wanted = expected.topology();
-    EXPECT_EQ(info.vertices, is.points.size()) << what_;
-    EXPECT_EQ(info.faces, is.faces.size()) << what_;
-    EXPECT_EQ(info.charts, pages.charts.size()) << what_;
-    EXPECT_EQ(info.wires, pages.wires.size()) << what_;
-    EXPECT_EQ(info.corners, pages.corners.size()) << what_;
-    const auto same = [&](std::uint64_t detail::Topology::*count, std::uint64_t said, const char* name) {
-      EXPECT_EQ(counted.*count, wanted.*count) << what_ << ": " << name << " of the mesh";
-      EXPECT_EQ(said, counted.*count) << what_ << ": " << name << " of info";
-    };
-    same(&detail::Topology::isolated_vertices, info.isolated_vertices, "isolated vertices");
-    same(&detail::Topology::degenerate_faces, info.degenerate_faces, "degenerate faces");
-    same(&detail::Topology::duplicate_faces, info.duplicate_faces, "duplicate faces");
-    same(&detail::Topology::nonmanifold_edges, info.nonmanifold_edges, "non-manifold edges");
-    same(&detail::Topology::nonmanifold_vertices, info.nonmanifold_vertices, "non-manifold vertices");
-    same(&detail::Topology::inconsistent_edges, info.inconsistent_edges, "inconsistent edges");
-  }
-
-  /// Charts away from the region keep their blobs; those that the edit made have the right size.
-  void check_charts(const Snapshot& before, const Snapshot& after, const std::set<ChartId>& edited) {
-    const PageCounts was(before), is(after);
-    std::vector<ChartId> region;
-    for (const ChartId id : edited)
-      if (was.charts.contains(id)) region.push_back(id);
-    std::vector<ChartId> near;
-    if (!region.empty()) near = before.find({{OfCharts{region}}, 2});
-    for (const auto& [id, chart] : was.charts) {
-      if (std::ranges::binary_search(near, id)) continue;
-      const auto now = is.charts.find(id);
-      if (now == is.charts.end()) {
-        ADD_FAILURE() << what_ << ": chart " << id.value << " far away is gone";
-      } else {
-        EXPECT_EQ(detail::state_of(now->second), detail::state_of(chart)) << what_ << ": chart " << id.value;
-      }
-    }
-    for (const auto& [id, chart] : is.charts)
-      if (!was.charts.contains(id) || was.charts.at(id).faces != chart.faces) {
-        EXPECT_LE(chart.faces, 2 * family_.chart_faces) << what_;
-        small_ += 4 * chart.faces < family_.chart_faces;
-        ++made_;
-      }
   }
 
   /// Versions stay what they were, and branches where they are.
@@ -574,7 +507,7 @@ class Oracle {
     std::cout << family_.name << ": " << done_ << " versions (" << merges_ << " merges, " << conflicts_
               << " conflicts), " << info.faces << " faces, " << info.charts << " charts (" << fresh.charts
               << " afresh), payload " << ratio << " of a fresh import; " << again_ << " merged files sent again; of "
-              << made_ << " charts made, " << small_ << " small\n";
+              << charts_.made << " charts made, " << charts_.small << " small\n";
   }
 
   const OracleFamily& family_;
@@ -587,7 +520,7 @@ class Oracle {
   History history_;
   std::map<std::string, VersionId> tips_;
   unsigned step_ = 0, done_ = 0, merges_ = 0, conflicts_ = 0, again_ = 0;
-  std::size_t made_ = 0, small_ = 0;
+  MadeCharts charts_;
   bool file_merged_ = false;
   std::string what_;
 };

@@ -66,19 +66,6 @@ inline mesh_file::MeshData painted_grid(std::uint32_t n) {
   return mesh;
 }
 
-inline void write_data(const mesh_file::MeshData& mesh, const std::filesystem::path& file) {
-  (void)mesh_file::write_mesh(file, mesh_file::format_of(file),
-                              {mesh.positions,
-                               mesh.corners,
-                               mesh.face_sizes,
-                               mesh_file::Scalar::float64,
-                               {},
-                               {},
-                               mesh.attributes,
-                               mesh.references,
-                               {}});
-}
-
 /// A fresh repository with the painted grid.
 class Painted {
  public:

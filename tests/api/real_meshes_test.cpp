@@ -191,14 +191,8 @@ void expect_the_edit(Repository& repository, const fs::path& out, std::uint32_t 
     ASSERT_TRUE(stands_at(data.positions[static_cast<std::size_t>(in_region)]));
     data.positions[static_cast<std::size_t>(in_region)] = target;
   }
-  mesh_file::MeshOutput edited;
-  edited.positions = data.positions;
-  edited.corners = data.corners;
-  edited.face_sizes = data.face_sizes;
-  edited.attributes = data.attributes;
-  edited.references = data.references;
-  if (!mesh_file::is_gltf(mesh_file::format_of(out))) edited.scalar = mesh_file::Scalar::float64;
-  (void)mesh_file::write_mesh(out, mesh_file::format_of(out), edited);
+  const bool is_gltf = mesh_file::is_gltf(mesh_file::format_of(out));
+  write_data(data, out, is_gltf ? mesh_file::Scalar::float32 : mesh_file::Scalar::float64);
 
   const CommitReport report = repository.commit_file(out, message("one vertex"));
   EXPECT_EQ(report.values_changed, 0U);

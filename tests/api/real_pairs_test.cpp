@@ -16,17 +16,6 @@ using mesh_file::MeshData;
 
 constexpr std::uint32_t kPairChartFaces = 500;
 
-void write_data(const MeshData& mesh, const fs::path& file) {
-  mesh_file::MeshOutput out;
-  out.positions = mesh.positions;
-  out.corners = mesh.corners;
-  out.face_sizes = mesh.face_sizes;
-  out.attributes = mesh.attributes;
-  out.references = mesh.references;
-  out.scalar = mesh_file::Scalar::float64;
-  (void)mesh_file::write_mesh(file, mesh_file::format_of(file), out);
-}
-
 class Pair {
  public:
   Pair(const fs::path& from, const fs::path& to)

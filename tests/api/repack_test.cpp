@@ -40,11 +40,7 @@ void nudge(Repository& repository, std::uint32_t chart, double steps) {
 void nudge_file(const std::filesystem::path& file) {
   mesh_file::MeshData data = mesh_file::read_mesh(file);
   data.positions[7].z += 0.1;
-  mesh_file::MeshOutput out;
-  out.positions = data.positions;
-  out.corners = data.corners;
-  out.scalar = mesh_file::Scalar::float64;
-  (void)mesh_file::write_mesh(file, mesh_file::Format::ply, out);
+  write_data(data, file);
 }
 
 struct Family {

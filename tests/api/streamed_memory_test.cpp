@@ -4,7 +4,7 @@
 #include "tests/api/whole_surface.h"
 #include "tests/support/memory_watch.h"
 
-/// Built-in edits of a whole large mesh hold a few charts at a time.
+/// Built-in edits and exports of a whole large mesh hold a few charts at a time.
 namespace ramcdb::test {
 namespace {
 
@@ -36,6 +36,21 @@ TEST(StreamedMemory, AMillionFacesAreSmoothedAndMovedInLessThanHalfOfWhatTheirPo
   EXPECT_GT(report.vertices_moved, 400'000U);
   std::printf("transform: %.1f MB at most; %.2f s\n", static_cast<double>(watch.peak()) / 1e6, report.seconds);
   EXPECT_LT(watch.peak(), positions / 2);
+}
+
+TEST(StreamedMemory, AMillionFacesAreExportedInLessThanHalfOfWhatTheirPositionsTake) {
+  TempRepository repository(terrain(707, 707), 5000, 16);
+  const Snapshot snapshot = repository->snapshot();
+  FileOptions options;
+  options.memory = kMemory;
+  options.threads = 2;
+  for (const char* name : {"out.ply", "out.obj", "out.stl"}) {
+    const MemoryWatch watch;
+    const CheckoutReport report = repository->export_mesh(snapshot, repository / name, options);
+    EXPECT_GT(report.faces, 990'000U);
+    std::printf("%s: %.1f MB at most; %.2f s\n", name, static_cast<double>(watch.peak()) / 1e6, report.seconds);
+    EXPECT_LT(watch.peak(), report.vertices * sizeof(Point) / 2);
+  }
 }
 
 }  // namespace

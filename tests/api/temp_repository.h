@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -13,6 +11,7 @@
 #include "api/mesh_file/mesh_file.h"
 #include "ramcdb/repository.h"
 #include "tests/support/meshes.h"
+#include "tests/support/temp_folder.h"
 
 namespace ramcdb::test {
 
@@ -23,28 +22,13 @@ namespace ramcdb::test {
   return options;
 }
 
-/// A folder that is gone when the test is over.
-class TempFolder {
- public:
-  TempFolder() {
-    static std::atomic<int> count{0};
-    path_ = std::filesystem::temp_directory_path() /
-            ("ramcdb-test-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
-    std::filesystem::remove_all(path_);  // of a killed process that had this number
-    std::filesystem::create_directories(path_);
-  }
-  ~TempFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-
-  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
+/// Writes a mesh as a program that knows nothing of vertex ids.
+inline void write_data(const mesh_file::MeshData& mesh, const std::filesystem::path& file,
+                       mesh_file::Scalar scalar = mesh_file::Scalar::float64) {
+  mesh_file::MeshOutput out = mesh_file::output_of(mesh, scalar);
+  out.vertex_ids = {};
+  (void)mesh_file::write_mesh(file, mesh_file::format_of(file), out);
+}
 
 inline void write_test_mesh(const TestMesh& mesh, const std::filesystem::path& file) {
   mesh_file::MeshOutput out;

@@ -80,17 +80,6 @@ Outcome RunningProgram::wait() {
 
 Outcome run_ramcdb(const Arguments& arguments) { return RunningProgram(arguments).wait(); }
 
-TempFolder::TempFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "ramcdb-cli-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("mkdtemp failed");
-  folder_ = name;
-}
-
-TempFolder::~TempFolder() {
-  std::error_code ignored;  // a folder left behind is no reason to fail a test that passed
-  std::filesystem::remove_all(folder_, ignored);
-}
-
 std::string read_text(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;

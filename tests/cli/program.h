@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/temp_folder.h"
+
 namespace ramcdb::test {
 
 /// What a run of the program left behind.
@@ -29,20 +31,6 @@ class RunningProgram {
  private:
   pid_t pid_ = 0;
   int out_ = -1, err_ = -1;
-};
-
-/// A folder that is gone when the test is over.
-class TempFolder {
- public:
-  TempFolder();
-  ~TempFolder();
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
- private:
-  std::filesystem::path folder_;
 };
 
 [[nodiscard]] std::string read_text(const std::string& file);

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -16,32 +15,13 @@
 
 #include "db/store.h"
 #include "ramcdb/error.h"
+#include "tests/support/temp_folder.h"
 
 namespace ramcdb::db::test {
 
 namespace fs = std::filesystem;
 
-/// A folder that is gone when the test is over. A forked child leaves it to its parent.
-class TempFolder {
- public:
-  TempFolder() {
-    static std::atomic<int> count{0};
-    path_ = fs::temp_directory_path() / fmt::format("ramcdb-db-test-{}-{}", process_, count++);
-    fs::create_directories(path_);
-  }
-  ~TempFolder() {
-    std::error_code ignored;
-    if (process_ == ::getpid()) fs::remove_all(path_, ignored);
-  }
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-
-  [[nodiscard]] fs::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  pid_t process_ = ::getpid();
-  fs::path path_;
-};
+using ::ramcdb::test::TempFolder;
 
 /// A folder with an empty repository.
 class TempStore {

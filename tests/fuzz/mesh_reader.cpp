@@ -50,18 +50,6 @@ void check_triangles(const MeshData& mesh) {
     for (const std::uint32_t c : triangle) require(c < mesh.corners.size(), "a triangle of a corner that is none");
 }
 
-mesh_file::MeshOutput output_of(const MeshData& mesh) {
-  mesh_file::MeshOutput out;
-  out.positions = mesh.positions;
-  out.corners = mesh.corners;
-  out.face_sizes = mesh.face_sizes;
-  out.scalar = mesh_file::Scalar::float64;
-  out.vertex_ids = mesh.vertex_ids;
-  out.attributes = mesh.attributes;
-  out.references = mesh.references;
-  return out;
-}
-
 /// The mesh as a file of this format holds it: STL has float32, triangles, and a vertex per corner. Nothing where it
 /// does not fit.
 std::optional<MeshData> as_held(const MeshData& mesh, Format format) {
@@ -126,7 +114,8 @@ void check_round_trip(const MeshData& mesh, Format format, bool ascii) {
   std::string name = file.string();
   constexpr const char* kExtensions[] = {".ply", ".obj", ".off", ".stl"};
   name += kExtensions[static_cast<std::size_t>(format)];
-  const auto dropped = mesh_file::write_mesh(name, format, output_of(mesh), ascii);
+  const auto dropped =
+      mesh_file::write_mesh(name, format, mesh_file::output_of(mesh, mesh_file::Scalar::float64), ascii);
   const MeshData again = mesh_file::read_mesh(name);
   std::filesystem::remove(name);
   check_same(again, *held);

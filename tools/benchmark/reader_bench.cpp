@@ -59,11 +59,7 @@ void measure(const char* kind, const fs::path& file, unsigned rounds) {
 
 void run(const fs::path& file, const fs::path& scratch, unsigned rounds) {
   const mesh_file::MeshData mesh = mesh_file::read_mesh(file);
-  mesh_file::MeshOutput out;
-  out.positions = mesh.positions;
-  out.corners = mesh.corners;
-  out.face_sizes = mesh.face_sizes;
-  out.attributes = mesh.attributes;
+  const mesh_file::MeshOutput out = mesh_file::output_of(mesh, mesh_file::Scalar::float32);
   fmt::print("\n## Readers: {}, {} vertices, {} faces, one thread, medians of {} rounds in turns\n\n",
              file.filename().string(), mesh.positions.size(), mesh.face_count(), rounds);
   fmt::print("| format | MB | ours MB/s | OpenMesh MB/s | OpenMesh / ours | with its half-edges / ours |\n");

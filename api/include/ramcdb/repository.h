@@ -90,6 +90,7 @@ struct FileOptions {
   std::optional<bool> local_origin;
   std::optional<LockOptions> lock;  ///< checkout: lock the charts first; the file's commit gives the lock back
   unsigned threads = 1;
+  std::uint64_t memory = std::uint64_t{1} << 30;  ///< export: bytes for charts that are held at a time
   Progress progress;
 };
 
@@ -187,7 +188,8 @@ class Repository {
   ImportIntoReport import_into(std::string_view mesh, const std::filesystem::path& file,
                                const ImportIntoOptions& options);
 
-  /// Writes a whole mesh; the format follows from the extension.
+  /// Writes a whole mesh, the format follows from the extension, a few charts of `options.memory` bytes at a time: the
+  /// rest lies in temporary files beside the new one.
   CheckoutReport export_mesh(const Snapshot& snapshot, const std::filesystem::path& file,
                              const FileOptions& options) const;
 

@@ -86,18 +86,6 @@ mesh_file::MeshOutput output_of(const std::vector<Point>& positions, const std::
   return out;
 }
 
-mesh_file::MeshOutput output_of(const mesh_file::MeshData& mesh, mesh_file::Scalar scalar) {
-  mesh_file::MeshOutput out;
-  out.positions = mesh.positions;
-  out.corners = mesh.corners;
-  out.face_sizes = mesh.face_sizes;
-  out.scalar = scalar;
-  out.vertex_ids = mesh.vertex_ids;
-  out.attributes = mesh.attributes;
-  out.references = mesh.references;
-  return out;
-}
-
 Attribute attribute(std::string_view name, AttributeOf of, NumberType type, std::uint8_t components, Meaning meaning,
                     std::vector<double> values) {
   Attribute made;

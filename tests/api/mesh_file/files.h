@@ -49,7 +49,6 @@ void write_bytes(const std::filesystem::path& file, std::string_view bytes);
 /// A mesh to write, whose parts must live on.
 [[nodiscard]] mesh_file::MeshOutput output_of(const std::vector<Point>& positions, const std::vector<Triangle>& faces,
                                               mesh_file::Scalar scalar);
-[[nodiscard]] mesh_file::MeshOutput output_of(const mesh_file::MeshData& mesh, mesh_file::Scalar scalar);
 
 /// An attribute of these values.
 [[nodiscard]] Attribute attribute(std::string_view name, AttributeOf of, NumberType type, std::uint8_t components,

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iostream>
+#include <iterator>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/api/model.h"
+#include "tests/api/oracle.h"
+
+/// What has to hold of a version that an edit made.
+namespace ramcdb::test {
+
+/// Tells where a version is not what it ought to be.
+inline void explain(const Model& expected, const Model& is, const std::string& what) {
+  std::cout << what << ": " << expected.points.size() << " vertices, " << expected.faces.size() << " faces expected, "
+            << is.points.size() << ", " << is.faces.size() << " there\n";
+  const auto wanted = expected.sorted_points(), have = is.sorted_points();
+  std::vector<LatticePoint> missing, other;
+  std::ranges::set_difference(wanted, have, std::back_inserter(missing));
+  std::ranges::set_difference(have, wanted, std::back_inserter(other));
+  for (std::size_t i = 0; i < std::min<std::size_t>(missing.size(), 10); ++i)
+    std::cout << "  missing " << missing[i].x << ' ' << missing[i].y << ' ' << missing[i].z << '\n';
+  for (std::size_t i = 0; i < std::min<std::size_t>(other.size(), 10); ++i)
+    std::cout << "  instead " << other[i].x << ' ' << other[i].y << ' ' << other[i].z << '\n';
+}
+
+/// What info and the index say is what the mesh has.
+inline void expect_counts(const Snapshot& after, const Model& is, const Model& expected, const std::string& what) {
+  const MeshInfo info = after.info();
+  const PageCounts pages(after);
+  const detail::Topology counted = is.topology(), wanted = expected.topology();
+  EXPECT_EQ(info.vertices, is.points.size()) << what;
+  EXPECT_EQ(info.faces, is.faces.size()) << what;
+  EXPECT_EQ(info.charts, pages.charts.size()) << what;
+  EXPECT_EQ(info.wires, pages.wires.size()) << what;
+  EXPECT_EQ(info.corners, pages.corners.size()) << what;
+  const auto same = [&](std::uint64_t detail::Topology::*count, std::uint64_t said, const char* name) {
+    EXPECT_EQ(counted.*count, wanted.*count) << what << ": " << name << " of the mesh";
+    EXPECT_EQ(said, counted.*count) << what << ": " << name << " of info";
+  };
+  same(&detail::Topology::isolated_vertices, info.isolated_vertices, "isolated vertices");
+  same(&detail::Topology::degenerate_faces, info.degenerate_faces, "degenerate faces");
+  same(&detail::Topology::duplicate_faces, info.duplicate_faces, "duplicate faces");
+  same(&detail::Topology::nonmanifold_edges, info.nonmanifold_edges, "non-manifold edges");
+  same(&detail::Topology::nonmanifold_vertices, info.nonmanifold_vertices, "non-manifold vertices");
+  same(&detail::Topology::inconsistent_edges, info.inconsistent_edges, "inconsistent edges");
+}
+
+struct MadeCharts {
+  std::size_t made = 0, small = 0;  ///< small: below a quarter of the target
+
+  void add(const MadeCharts& more) {
+    made += more.made;
+    small += more.small;
+  }
+};
+
+/// Charts away from the region keep their blobs; those that the edit made have the right size.
+inline MadeCharts expect_charts(const Snapshot& before, const Snapshot& after, const std::set<ChartId>& edited,
+                                std::uint32_t target, const std::string& what) {
+  MadeCharts counts;
+  const PageCounts was(before), is(after);
+  std::vector<ChartId> region;
+  for (const ChartId id : edited)
+    if (was.charts.contains(id)) region.push_back(id);
+  std::vector<ChartId> near;
+  if (!region.empty()) near = before.find({{OfCharts{region}}, 2});
+  for (const auto& [id, chart] : was.charts) {
+    if (std::ranges::binary_search(near, id)) continue;
+    const auto now = is.charts.find(id);
+    if (now == is.charts.end()) {
+      ADD_FAILURE() << what << ": chart " << id.value << " far away is gone";
+    } else {
+      EXPECT_EQ(detail::state_of(now->second), detail::state_of(chart)) << what << ": chart " << id.value;
+    }
+  }
+  for (const auto& [id, chart] : is.charts)
+    if (!was.charts.contains(id) || was.charts.at(id).faces != chart.faces) {
+      EXPECT_LE(chart.faces, 2 * target) << what;
+      counts.small += 4 * chart.faces < target;
+      ++counts.made;
+    }
+  return counts;
+}
+
+}  // namespace ramcdb::test
