@@ -142,10 +142,30 @@ class ThreeWayMerge {
     return base_face_[face].face != kNew && our_face_[base_face_[face].face] == kNew;
   }
 
+  /// Per vertex of the base whether each side took away all faces that the other left there: it goes with them.
+  [[nodiscard]] std::vector<bool> left_bare(const std::vector<bool>& used) const {
+    std::vector<bool> theirs(base_.points.size(), false), ours = theirs, stays = theirs;
+    for (const Triangle& t : theirs_.faces)
+      for (const std::uint32_t v : t)
+        if (base_vertex_[v] != kNew) theirs[base_vertex_[v]] = true;
+    for (std::uint32_t v = 0; v < used.size(); ++v)
+      if (used[v] && base_vertex_[v] != kNew) stays[base_vertex_[v]] = true;
+    for (std::uint32_t f = 0; f < ours_.face_source.size(); ++f)
+      for (const std::uint32_t v : ours_.mesh.faces[f]) {
+        const std::uint32_t b = ours_.vertex_source[v];
+        if (b == kNew) continue;
+        ours[b] = true;
+        stays[b] = stays[b] || ours_.face_source[f] == kNew;
+      }
+    for (std::uint32_t b = 0; b < stays.size(); ++b) stays[b] = theirs[b] && ours[b] && !stays[b];
+    return stays;
+  }
+
   void add_vertices() {
     std::vector<bool> used(theirs_.points.size(), false);
     for (std::uint32_t f = 0; f < theirs_.faces.size(); ++f)
       for (const std::uint32_t v : theirs_.faces[f]) used[v] = used[v] || !is_taken_away(f);
+    const std::vector<bool> bare = left_bare(used);
     vertex_.assign(theirs_.points.size(), kNew);
     for (std::uint32_t v = 0; v < theirs_.points.size(); ++v) {
       const std::uint32_t b = base_vertex_[v];
@@ -154,6 +174,12 @@ class ThreeWayMerge {
         if (!same_place(their_places_[v], base_places_[b])) conflict_at(b, kMovedGone);
         if (has_new_values(AttributeOf::vertex, b, theirs_.attributes, v)) conflict_at(b, kValueGone);
         if (!used[v]) continue;
+      } else if (b != kNew && bare[b]) {
+        if (moved_by_us(b) || !same_place(their_places_[v], base_places_[b])) conflict_at(b, kMovedGone);
+        if (has_new_values(AttributeOf::vertex, b, theirs_.attributes, v) ||
+            has_new_values(AttributeOf::vertex, b, ours_.mesh.attributes, our_vertex_[b]))
+          conflict_at(b, kValueGone);
+        continue;
       }
       vertex_[v] = builder_.add_vertex(v, place_of(v));
       merge_vertex_values(v);

@@ -229,6 +229,7 @@ class PlainMerge {
           contradict(id, "changed and removed");
       }
     add_faces();
+    drop_bare();
     if (!contradiction_.empty()) return std::nullopt;
     return std::move(out_);
   }
@@ -305,6 +306,29 @@ class PlainMerge {
         out_.faces.push_back(t);
       }
     }
+  }
+
+  /// A vertex goes when each side took away all faces that the other left at it.
+  void drop_bare() {
+    const auto with_faces = [](const Model& model) {
+      std::set<std::uint64_t> ids;
+      for (const Triangle& t : model.faces)
+        for (const std::uint32_t v : t) ids.insert(model.ids[v]);
+      return ids;
+    };
+    const std::set<std::uint64_t> ours = with_faces(ours_), theirs = with_faces(theirs_), stay = with_faces(out_);
+    Model kept;
+    std::vector<std::uint32_t> to(out_.ids.size(), 0);
+    for (std::uint32_t v = 0; v < out_.ids.size(); ++v) {
+      const std::uint64_t id = out_.ids[v];
+      to[v] = static_cast<std::uint32_t>(kept.ids.size());
+      if (!in_base_.contains(id) || stay.contains(id) || !ours.contains(id) || !theirs.contains(id))
+        kept.add_vertex(id, out_.points[v], out_.color[v]);
+      else if (changed(out_, v, in_base_.at(id)))
+        contradict(id, "changed and left bare");
+    }
+    for (const Triangle& t : out_.faces) kept.faces.push_back({to[t[0]], to[t[1]], to[t[2]]});
+    out_ = std::move(kept);
   }
 
   const Model &base_, &ours_, &theirs_;

@@ -299,7 +299,7 @@ class Oracle {
 
   /// A committed file is in step with the repository.
   void look_at_file(const Work& work) {
-    if (tips_.at(work.branch) == work.base) return;
+    if (!tips_.contains(work.branch) || tips_.at(work.branch) == work.base) return;
     if (file_merged_) return commit_again(work);
     what_ += ", looked at";
     EXPECT_TRUE(repository_.status_file(work.file).clean()) << what_;
