@@ -129,7 +129,7 @@ class Comparison {
     add_charts_at(changed);
     add_isolated();
     add_charts_of_new_faces();
-    if (set_.recut.empty()) set_.recut.insert(region_.charts.front());  // what is new has nothing to do with any
+    if (set_.recut.empty()) set_.recut.insert(edited_.home ? edited_.home : region_.charts.front());
   }
 
   void refuse_outer(const std::vector<EdgeUse>& changed) const {

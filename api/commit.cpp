@@ -190,6 +190,9 @@ std::optional<EncodedEdit> merge_on(const Snapshot::Impl& tip, const PendingEdit
     for (MergeConflict& conflict : report.conflict_places) conflict.mesh = report.mesh;
     return std::nullopt;
   }
+  const auto there = std::ranges::find_if(edit.region.charts,
+                                          [&](ChartId id) { return std::ranges::binary_search(theirs.charts, id); });
+  if (there != edit.region.charts.end()) merged.edited.home = *there;  // not one that only others changed
   report.conflicts.clear();
   report.merged = true;
   return encode_edit(tip, std::move(theirs), std::move(merged.edited), recut_rule(edit, options, true),

@@ -18,6 +18,7 @@ struct EditedRegion {
   std::vector<std::uint32_t> vertex_source;  ///< per vertex the region's that it is, or kNew; none twice
   /// Per face the region's that it still is, with the same vertices corner by corner, or kNew; none twice.
   std::vector<std::uint32_t> face_source;
+  ChartId home{};  ///< the chart that takes what is new and touches nothing; when not said, the region's first
 };
 
 /// A region of which nothing was edited.

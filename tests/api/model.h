@@ -287,9 +287,18 @@ class PlainMerge {
 
   void add_faces() {
     const FacesById base = faces_by_id(base_), ours = faces_by_id(ours_);
-    FacesById all = faces_by_id(theirs_);
-    for (const auto& [face, n] : base) all[face] -= n;
-    for (const auto& [face, n] : ours) all[face] += n;
+    const FacesById theirs_faces = faces_by_id(theirs_);
+    FacesById all = theirs_faces;
+    const auto in = [](const FacesById& faces, const auto& face) {
+      const auto it = faces.find(face);
+      return it == faces.end() ? 0 : it->second;
+    };
+    for (const auto& [face, n] : base) all[face] += in(ours, face) - n;
+    for (const auto& [face, n] : ours) {
+      const int there = in(theirs_faces, face), before = in(base, face);
+      if (before == 0) all[face] += n;
+      if (n > before && there > before) all[face] = std::max(n, there);  // added on both sides: taken once
+    }
     const auto at = out_.vertex_of_id();
     for (const auto& [face, n] : all) {
       if (n < 0 && std::ranges::any_of(face, [&](std::uint64_t id) { return has_new_face(id); }))

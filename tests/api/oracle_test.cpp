@@ -229,7 +229,7 @@ class Oracle {
     auto colors = colors_of(sketch);
     if (colored_)
       for (auto& color : colors)
-        if (color.empty() || random_() % 50 == 0) color = {double(random_() % 256), 7, 9};
+        if (color.empty() || color[0] < 0 || random_() % 50 == 0) color = {double(random_() % 256), 7, 9};
     write_sketch(sketch, colors, read.vertex_ids, file, !ids && random_() % 2);
     auto work = begin("file " + name, branch, base, sketch, std::move(colors),
                       [this, file](const CommitOptions& options) { return repository_.commit_file(file, options); });
