@@ -32,6 +32,24 @@ void EditedRegionBuilder::add_polygon(std::span<const std::uint32_t> corners, st
   mesh.polygon_corners.insert(mesh.polygon_corners.end(), corners.begin(), corners.end());
 }
 
+void EditedRegionBuilder::take_new(const RegionMesh& from, std::vector<std::uint32_t> vertices,
+                                   std::vector<std::uint32_t> faces) {
+  new_from_ = &from;
+  new_vertices_ = std::move(vertices);
+  new_faces_ = std::move(faces);
+  std::vector<std::vector<std::uint32_t>> faces_of(from.polygon_sizes.size());
+  for (std::uint32_t f = 0; f < from.polygon_of_face.size(); ++f)
+    if (new_faces_[f] != kNew) faces_of[from.polygon_of_face[f]].push_back(new_faces_[f]);
+  std::vector<std::uint32_t> corners;
+  for (std::size_t p = 0, first = 0; p < faces_of.size(); first += from.polygon_sizes[p++]) {
+    if (from.polygon_sizes[p] == 3 || faces_of[p].size() + 2 != from.polygon_sizes[p]) continue;
+    corners.clear();
+    for (std::size_t i = first; i < first + from.polygon_sizes[p]; ++i)
+      corners.push_back(3 * new_faces_[from.polygon_corners[i] / 3] + from.polygon_corners[i] % 3);
+    add_polygon(corners, faces_of[p]);
+  }
+}
+
 EditedRegion EditedRegionBuilder::finish(std::span<const Attribute> attributes) {
   keep_polygons();
   take_values(attributes);
@@ -83,7 +101,19 @@ void EditedRegionBuilder::take_values(std::span<const Attribute> attributes) {
       else
         take(per_face * i, per_face * sources[i], per_face);
     }
+    if (new_from_) take_new_values(out_.mesh.attributes.size() - 1);
   }
+}
+
+void EditedRegionBuilder::take_new_values(std::size_t attribute) {
+  const Attribute& from = new_from_->attributes[attribute];
+  Attribute& to = out_.mesh.attributes[attribute];
+  const std::size_t per = from.info.components * (from.info.of == AttributeOf::corner ? 3 : std::size_t{1});
+  const auto& became = from.info.of == AttributeOf::vertex ? new_vertices_ : new_faces_;
+  for (std::size_t i = 0; i < became.size(); ++i)
+    if (became[i] != kNew)
+      std::copy_n(from.values.begin() + static_cast<std::ptrdiff_t>(per * i), per,
+                  to.values.begin() + static_cast<std::ptrdiff_t>(per * became[i]));
 }
 
 }  // namespace ramcdb::detail

@@ -79,10 +79,8 @@ class Limiter {
     choose_islands();
     add_vertices();
     add_faces();
-    add_polygons();
-    EditedRegion out = builder_.finish(values_);
-    copy_new_values(out);
-    return out;
+    builder_.take_new(edited_.mesh, std::move(new_vertices_), std::move(new_faces_));
+    return builder_.finish(values_);
   }
 
  private:
@@ -148,11 +146,10 @@ class Limiter {
       vertex_[v] = builder_.add_vertex(v, taken ? after_.place(to) : before_.place(v));
       if (taken) take_values(AttributeOf::vertex, to, v);
     }
+    new_vertices_.assign(edited_.vertex_source.size(), kNew);
     for (std::uint32_t v = 0; v < edited_.vertex_source.size(); ++v)
-      if (edited_.vertex_source[v] == kNew && is_chosen(node(v))) {
-        vertex_[node(v)] = builder_.add_vertex(kNew, after_.place(v));
-        new_vertices_.push_back(v);
-      }
+      if (edited_.vertex_source[v] == kNew && is_chosen(node(v)))
+        new_vertices_[v] = vertex_[node(v)] = builder_.add_vertex(kNew, after_.place(v));
   }
 
   [[nodiscard]] Triangle out_vertices(const Triangle& nodes) const {
@@ -167,12 +164,9 @@ class Limiter {
       take_values(AttributeOf::face, edited_face_[f], f);
       for (std::uint32_t i = 0; i < 3; ++i) take_values(AttributeOf::corner, 3 * edited_face_[f] + i, 3 * f + i);
     }
-    added_.assign(edited_.face_source.size(), kNew);
+    new_faces_.assign(edited_.face_source.size(), kNew);
     for (std::uint32_t f = 0; f < edited_.face_source.size(); ++f)
-      if (is_new(f) && is_chosen(nodes_of(f)[0])) {
-        added_[f] = builder_.add_face(out_vertices(nodes_of(f)), kNew);
-        new_faces_.push_back(f);
-      }
+      if (is_new(f) && is_chosen(nodes_of(f)[0])) new_faces_[f] = builder_.add_face(out_vertices(nodes_of(f)), kNew);
   }
 
   void take_values(AttributeOf of, std::size_t from, std::size_t to) {
@@ -186,33 +180,6 @@ class Limiter {
                 out.begin() + static_cast<std::ptrdiff_t>(count * to));
   }
 
-  /// Those of which all faces are new; islands have them whole.
-  void add_polygons() {
-    const RegionMesh& mesh = edited_.mesh;
-    std::vector<std::vector<std::uint32_t>> faces_of(mesh.polygon_sizes.size());
-    for (std::uint32_t f = 0; f < mesh.polygon_of_face.size(); ++f)
-      if (added_[f] != kNew) faces_of[mesh.polygon_of_face[f]].push_back(added_[f]);
-    for (std::size_t p = 0, first = 0; p < faces_of.size(); first += mesh.polygon_sizes[p++]) {
-      if (mesh.polygon_sizes[p] == 3 || faces_of[p].size() + 2 != mesh.polygon_sizes[p]) continue;
-      std::vector<std::uint32_t> corners;
-      for (std::size_t i = first; i < first + mesh.polygon_sizes[p]; ++i)
-        corners.push_back(3 * added_[mesh.polygon_corners[i] / 3] + mesh.polygon_corners[i] % 3);
-      builder_.add_polygon(corners, faces_of[p]);
-    }
-  }
-
-  /// What is new comes behind all that stays.
-  void copy_new_values(EditedRegion& out) const {
-    for (std::size_t a = 0; a < values_.size(); ++a) {
-      const AttributeInfo& info = values_[a].info;
-      const bool of_vertices = info.of == AttributeOf::vertex;
-      const auto& from = of_vertices ? new_vertices_ : new_faces_;
-      const std::size_t first = (of_vertices ? out.vertex_source : out.face_source).size() - from.size();
-      const std::size_t per = info.components * (info.of == AttributeOf::corner ? 3 : std::size_t{1});
-      for (std::size_t i = 0; i < from.size(); ++i) copy(a, from[i], first + i, per, out.mesh.attributes[a].values);
-    }
-  }
-
   const RegionMesh& region_;
   const EditedRegion& edited_;
   Inside before_, after_;
@@ -221,8 +188,7 @@ class Limiter {
   std::vector<bool> is_island_, chosen_;                    ///< per root
   std::vector<Attribute> values_;                           ///< in the numbering of the region
   std::vector<std::uint32_t> vertex_;                       ///< node -> result
-  std::vector<std::uint32_t> added_;                        ///< face of the edit -> result
-  std::vector<std::uint32_t> new_vertices_, new_faces_;     ///< of the edit, that are taken
+  std::vector<std::uint32_t> new_vertices_, new_faces_;     ///< of the edit -> result, if taken
   EditedRegionBuilder builder_;
 };
 

@@ -46,8 +46,8 @@ class ThreeWayMerge {
     add_faces();
     add_new_faces();
     if (!merged_.conflicts.empty()) return std::move(merged_);
+    builder_.take_new(ours_.mesh, std::move(new_vertices_), std::move(new_faces_));
     merged_.edited = builder_.finish(values_);
-    copy_new_values();
     return std::move(merged_);
   }
 
@@ -190,14 +190,14 @@ class ThreeWayMerge {
         if (has_new_values(AttributeOf::vertex, b, ours_.mesh.attributes, our_vertex_[b])) conflict_at(b, kValueGone);
       }
     our_new_vertex_.assign(ours_.vertex_source.size(), kNew);
+    new_vertices_ = our_new_vertex_;
     for (std::uint32_t v = 0; v < ours_.vertex_source.size(); ++v)
       if (ours_.vertex_source[v] == kNew) {
         if (alike_.vertex[v] != kNew) {
           our_new_vertex_[v] = vertex_[alike_.vertex[v]];
           continue;
         }
-        our_new_vertex_[v] = builder_.add_vertex(kNew, our_places_[v]);
-        new_vertices_.push_back({our_new_vertex_[v], v});
+        new_vertices_[v] = our_new_vertex_[v] = builder_.add_vertex(kNew, our_places_[v]);
       }
   }
 
@@ -297,7 +297,7 @@ class ThreeWayMerge {
   }
 
   void add_new_faces() {
-    std::vector<std::uint32_t> added(ours_.face_source.size(), kNew);
+    new_faces_.assign(ours_.face_source.size(), kNew);
     for (std::uint32_t f = 0; f < ours_.face_source.size(); ++f) {
       if (ours_.face_source[f] != kNew || alike_.faces[f]) continue;
       const Triangle& t = ours_.mesh.faces[f];
@@ -306,34 +306,7 @@ class ThreeWayMerge {
         if (a != kNew && b != kNew && their_new_edges_.contains({std::min(a, b), std::max(a, b)}))
           conflict_at(a, "both sides changed the faces here");
       }
-      added[f] = builder_.add_face({merged_vertex(t[0]), merged_vertex(t[1]), merged_vertex(t[2])}, kNew);
-      new_faces_.push_back({added[f], f});
-    }
-    add_new_polygons(added);
-  }
-
-  void add_new_polygons(const std::vector<std::uint32_t>& added) {
-    const RegionMesh& mesh = ours_.mesh;
-    std::vector<std::vector<std::uint32_t>> faces_of(mesh.polygon_sizes.size());
-    for (std::uint32_t f = 0; f < mesh.polygon_of_face.size(); ++f)
-      if (added[f] != kNew) faces_of[mesh.polygon_of_face[f]].push_back(added[f]);
-    std::vector<std::uint32_t> corners;
-    for (std::size_t p = 0, first = 0; p < faces_of.size(); first += mesh.polygon_sizes[p++]) {
-      if (mesh.polygon_sizes[p] == 3 || faces_of[p].size() + 2 != mesh.polygon_sizes[p]) continue;
-      corners.clear();
-      for (std::size_t i = first; i < first + mesh.polygon_sizes[p]; ++i)
-        corners.push_back(3 * added[mesh.polygon_corners[i] / 3] + mesh.polygon_corners[i] % 3);
-      builder_.add_polygon(corners, faces_of[p]);
-    }
-  }
-
-  void copy_new_values() {
-    for (std::size_t a = 0; a < values_.size(); ++a) {
-      const AttributeInfo& info = values_[a].info;
-      const std::size_t per = info.components * (info.of == AttributeOf::corner ? 3 : std::size_t{1});
-      for (const auto& [to, from] : info.of == AttributeOf::vertex ? new_vertices_ : new_faces_)
-        std::copy_n(ours_.mesh.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(per * from), per,
-                    merged_.edited.mesh.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(per * to));
+      new_faces_[f] = builder_.add_face({merged_vertex(t[0]), merged_vertex(t[1]), merged_vertex(t[2])}, kNew);
     }
   }
 
@@ -349,12 +322,12 @@ class ThreeWayMerge {
   AlikeAdditions alike_;
   std::set<std::uint32_t> told_;
   std::set<std::pair<std::uint32_t, std::uint32_t>> their_new_edges_;
-  std::vector<std::uint32_t> base_vertex_;                                         ///< theirs -> base
-  std::vector<FaceMatch> base_face_;                                               ///< theirs -> base
-  std::vector<std::uint32_t> their_vertex_, their_face_, our_vertex_, our_face_;   ///< base -> theirs, ours
-  std::vector<std::uint32_t> vertex_;                                              ///< theirs -> merged
-  std::vector<std::uint32_t> our_new_vertex_;                                      ///< ours -> merged
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> new_vertices_, new_faces_;  ///< merged, ours
+  std::vector<std::uint32_t> base_vertex_;                                        ///< theirs -> base
+  std::vector<FaceMatch> base_face_;                                              ///< theirs -> base
+  std::vector<std::uint32_t> their_vertex_, their_face_, our_vertex_, our_face_;  ///< base -> theirs, ours
+  std::vector<std::uint32_t> vertex_;                                             ///< theirs -> merged
+  std::vector<std::uint32_t> our_new_vertex_;                                     ///< ours -> merged
+  std::vector<std::uint32_t> new_vertices_, new_faces_;  ///< ours -> merged, of what ours alone added
 };
 
 }  // namespace

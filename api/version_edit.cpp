@@ -31,16 +31,19 @@ class MeshAsEdit {
         builder_(at, region) {}
 
   EditedRegion run() {
+    std::vector<std::uint32_t> new_vertices, new_faces;
     for (std::uint32_t v = 0; v < mesh_.points.size(); ++v) {
       const std::uint32_t source = match_.vertices[match_.vertex[v]].region;
+      new_vertices.push_back(source == kNew ? v : kNew);
       (void)builder_.add_vertex(source, position_in(mesh_, at_.record().lattice, v));
       take_value(AttributeOf::vertex, v, source);
     }
-    for (std::uint32_t f = 0; f < mesh_.faces.size(); ++f) add_face(f);
-    add_polygons();
-    EditedRegion edited = builder_.finish(values_);
-    copy_new_values(edited);
-    return edited;
+    for (std::uint32_t f = 0; f < mesh_.faces.size(); ++f) {
+      add_face(f);
+      new_faces.push_back(match_.faces[f].face == kNew ? f : kNew);
+    }
+    builder_.take_new(mesh_, std::move(new_vertices), std::move(new_faces));
+    return builder_.finish(values_);
   }
 
  private:
@@ -65,28 +68,6 @@ class MeshAsEdit {
       std::copy_n(mesh_.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(components * from), components,
                   values_[a].values.begin() + static_cast<std::ptrdiff_t>(components * to));
     }
-  }
-
-  void copy_new_values(EditedRegion& edited) const {
-    for (std::size_t a = 0; a < values_.size(); ++a) {
-      const AttributeInfo& info = values_[a].info;
-      const std::size_t per = info.components * (info.of == AttributeOf::corner ? 3 : std::size_t{1});
-      const auto& sources = info.of == AttributeOf::vertex ? edited.vertex_source : edited.face_source;
-      for (std::size_t i = 0; i < sources.size(); ++i)
-        if (sources[i] == kNew)
-          std::copy_n(mesh_.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(per * i), per,
-                      edited.mesh.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(per * i));
-    }
-  }
-
-  /// Those of which all faces are new.
-  void add_polygons() {
-    std::vector<std::vector<std::uint32_t>> faces_of(mesh_.polygon_sizes.size());
-    for (std::uint32_t f = 0; f < mesh_.polygon_of_face.size(); ++f)
-      if (match_.faces[f].face == kNew) faces_of[mesh_.polygon_of_face[f]].push_back(f);
-    for (std::size_t p = 0, first = 0; p < faces_of.size(); first += mesh_.polygon_sizes[p++])
-      if (mesh_.polygon_sizes[p] > 3 && faces_of[p].size() + 2 == mesh_.polygon_sizes[p])
-        builder_.add_polygon(std::span(mesh_.polygon_corners).subspan(first, mesh_.polygon_sizes[p]), faces_of[p]);
   }
 
   const Snapshot::Impl& at_;
