@@ -11,22 +11,28 @@
 
 #include "tests/api/model.h"
 #include "tests/api/oracle.h"
+#include "tests/api/oracle_history.h"
 
 /// What has to hold of a version that an edit made.
 namespace ramcdb::test {
 
 /// Tells where a version is not what it ought to be.
-inline void explain(const Model& expected, const Model& is, const std::string& what) {
+/// \param sides what was merged, if it was
+inline void explain(const Model& expected, const Model& is, const std::string& what, const ThreeWay* sides) {
   std::cout << what << ": " << expected.points.size() << " vertices, " << expected.faces.size() << " faces expected, "
             << is.points.size() << ", " << is.faces.size() << " there\n";
   const auto wanted = expected.sorted_points(), have = is.sorted_points();
   std::vector<LatticePoint> missing, other;
   std::ranges::set_difference(wanted, have, std::back_inserter(missing));
   std::ranges::set_difference(have, wanted, std::back_inserter(other));
-  for (std::size_t i = 0; i < std::min<std::size_t>(missing.size(), 10); ++i)
-    std::cout << "  missing " << missing[i].x << ' ' << missing[i].y << ' ' << missing[i].z << '\n';
-  for (std::size_t i = 0; i < std::min<std::size_t>(other.size(), 10); ++i)
-    std::cout << "  instead " << other[i].x << ' ' << other[i].y << ' ' << other[i].z << '\n';
+  const auto list = [&](const char* name, const std::vector<LatticePoint>& places) {
+    for (std::size_t i = 0; i < std::min<std::size_t>(places.size(), 10); ++i) {
+      std::cout << "  " << name << ' ' << places[i].x << ' ' << places[i].y << ' ' << places[i].z << '\n';
+      if (sides) sides->tell(places[i]);
+    }
+  };
+  list("missing", missing);
+  list("instead", other);
 }
 
 /// What info and the index say is what the mesh has.

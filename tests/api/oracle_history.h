@@ -1,5 +1,6 @@
 #pragma once
 
+#include <iostream>
 #include <map>
 #include <optional>
 #include <random>
@@ -36,6 +37,17 @@ class ThreeWay {
            !common(charts_of(touched_, charts), charts_of(by_theirs_, charts));
   }
   [[nodiscard]] std::optional<Model> merged() const { return PlainMerge(base_, ours_, theirs_).run(); }
+  /// Who lies at a place in each of the three.
+  void tell(LatticePoint place) const {
+    for (const auto& [name, model] :
+         {std::pair("base", &base_), std::pair("ours", &ours_), std::pair("theirs", &theirs_)})
+      for (std::uint32_t v = 0; v < model->ids.size(); ++v) {
+        if (model->points[v] != place) continue;
+        const auto faces =
+            std::ranges::count_if(model->faces, [&](const Triangle& t) { return std::ranges::count(t, v) > 0; });
+        std::cout << "    " << name << ": vertex " << model->ids[v] << " of " << faces << " faces\n";
+      }
+  }
   [[nodiscard]] std::string contradiction() const {
     PlainMerge merge(base_, ours_, theirs_);
     (void)merge.run();

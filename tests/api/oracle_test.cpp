@@ -375,7 +375,7 @@ class Oracle {
     const auto charts = charts_at(tip);
     for (const std::uint64_t id : touched(history_.model(tip), *plain))
       near.insert(charts.at(id).begin(), charts.at(id).end());
-    accept(branch, *plain, near, other);
+    accept(branch, *plain, near, other, &sides);
     return true;
   }
 
@@ -443,14 +443,15 @@ class Oracle {
   // What has to hold.
 
   /// A version that was made, or not where nothing had to be, is what it ought to be.
-  void accept(const std::string& branch, const Model& expected, const std::set<ChartId>& region, VersionId other = {}) {
+  void accept(const std::string& branch, const Model& expected, const std::set<ChartId>& region, VersionId other = {},
+              const ThreeWay* sides = nullptr) {
     const VersionId tip = tips_.at(branch);
     const Snapshot before = at(tip), after = repository_.snapshot("mesh", branch);
     const RegionMesh now = whole(after);
     Model is = model_of(now);
     const auto same = SameMesh(expected, is).run();
     EXPECT_TRUE(same) << what_ << ": another mesh";
-    if (!same) explain(expected, is, what_);
+    if (!same) explain(expected, is, what_, sides);
     EXPECT_TRUE(face_set(is.points, is.faces) == face_set(expected.points, expected.faces)) << what_ << ": faces";
     EXPECT_TRUE(is.sorted_points() == expected.sorted_points()) << what_ << ": vertices";
     if (colored_) {
