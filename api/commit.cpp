@@ -174,9 +174,12 @@ std::optional<EncodedEdit> merge_on(const Snapshot::Impl& tip, const PendingEdit
   for (const ChartId id : before)
     if (!std::ranges::binary_search(since.removed, id)) now.insert(id);
 
+  // Vertices of one version are told apart by who they are, those of several only by their places.
   std::vector<RegionPart> parts = edit.parts;
+  RegionPart& of_base = *std::ranges::find(parts, &edit.base(), &RegionPart::at);
   for (const ChartId id : before)
-    if (!std::ranges::binary_search(edit.region.charts, id)) parts.push_back({&edit.base(), {id}});
+    if (!std::ranges::binary_search(edit.region.charts, id)) of_base.charts.push_back(id);
+  std::ranges::sort(of_base.charts);
   const RegionPart tip_part{&tip, {now.begin(), now.end()}};
   const RegionMesh base = load_region(parts, options.threads, nullptr, true);
   RegionMesh theirs = load_region(std::span(&tip_part, 1), options.threads, nullptr, true);

@@ -164,8 +164,11 @@ class IsolatedVertices {
     drop_paired();
     std::ranges::sort(mine_, by_position(region_.points));
     std::ranges::sort(theirs_, by_position(other_.points));
-    for (std::size_t i = 0; mine_.size() == theirs_.size() && i < mine_.size(); ++i) pair(mine_[i], theirs_[i]);
+    if (mine_.size() != theirs_.size()) return;
+    for (std::size_t i = 0; i < mine_.size(); ++i) pair(mine_[i], theirs_[i]);
+    if (mine_.size() > 1) guessed_ = mine_;
   }
+  [[nodiscard]] std::vector<std::uint32_t> guessed() const { return guessed_; }
   /// Those that stay because the other mesh cannot say anything of them.
   [[nodiscard]] std::span<const std::uint32_t> untold() const {
     return none_at_all_ ? std::span<const std::uint32_t>(mine_) : std::span<const std::uint32_t>();
@@ -218,7 +221,7 @@ class IsolatedVertices {
   const RegionMesh& region_;
   const OtherMesh& other_;
   Found& found_;
-  std::vector<std::uint32_t> mine_, theirs_;
+  std::vector<std::uint32_t> mine_, theirs_, guessed_;
   bool none_at_all_;
   std::vector<bool> taken_;
 };
@@ -291,6 +294,7 @@ RegionMatch match_region(const RegionMesh& region, const RegionFaces& faces, con
   IsolatedVertices isolated(region, faces, other, found);
   isolated.pair(named);
   RegionMatch result = listed(region, std::move(found), isolated.untold());
+  result.guessed = isolated.guessed();
   result.faces_gone = faces.count() - surviving(result);
   return result;
 }

@@ -42,6 +42,8 @@ struct RegionMatch {
   /// Per face of the other mesh: the face of `RegionFaces` that survives in it, with the same vertices in the same
   /// cyclic order, and its turn; none for a new face. No face of the region twice.
   std::vector<FaceMatch> faces;
+  /// Of the region, vertices without faces that moved, and were paired in order of position: each may be another.
+  std::vector<std::uint32_t> guessed;
   std::uint64_t faces_gone = 0, vertices_gone = 0;  ///< of the region, not in the other mesh
 
   /// Nothing came or went; vertices may have moved.

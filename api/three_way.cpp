@@ -62,6 +62,8 @@ class ThreeWayMerge {
         their_vertex_[b] = v;
         merged_.theirs_moved = merged_.theirs_moved || !same_place(their_places_[v], base_places_[b]);
       }
+    guessed_.assign(base_.points.size(), false);
+    for (const std::uint32_t b : match.guessed) guessed_[b] = true;
     base_face_ = match.faces;
     their_face_.assign(base_.faces.size(), kNew);
     for (std::uint32_t f = 0; f < base_face_.size(); ++f)
@@ -293,6 +295,7 @@ class ThreeWayMerge {
       conflict_at(b, "a vertex that one side uses was removed by the other");
       return 0;
     }
+    if (guessed_[b]) conflict_at(b, "vertices without faces were moved by one side and got faces from the other");
     return vertex_[their_vertex_[b]];
   }
 
@@ -322,8 +325,9 @@ class ThreeWayMerge {
   AlikeAdditions alike_;
   std::set<std::uint32_t> told_;
   std::set<std::pair<std::uint32_t, std::uint32_t>> their_new_edges_;
-  std::vector<std::uint32_t> base_vertex_;                                        ///< theirs -> base
-  std::vector<FaceMatch> base_face_;                                              ///< theirs -> base
+  std::vector<bool> guessed_;               ///< per vertex of the base: which of theirs it is, is not sure
+  std::vector<std::uint32_t> base_vertex_;  ///< theirs -> base
+  std::vector<FaceMatch> base_face_;        ///< theirs -> base
   std::vector<std::uint32_t> their_vertex_, their_face_, our_vertex_, our_face_;  ///< base -> theirs, ours
   std::vector<std::uint32_t> vertex_;                                             ///< theirs -> merged
   std::vector<std::uint32_t> our_new_vertex_;                                     ///< ours -> merged

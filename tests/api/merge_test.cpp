@@ -408,5 +408,58 @@ TEST_F(Merge, AFileWhoseBordersOthersCutStaysOneSurface) {
   expect_whole();
 }
 
+/// Two sheets of a chart each that touch at a place where each has a vertex.
+TestMesh touching_sheets() {
+  TestMesh mesh;
+  for (std::uint32_t sheet = 0; sheet < 2; ++sheet) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (std::uint32_t y = 0; y <= 10; ++y)
+      for (std::uint32_t x = 0; x <= 10; ++x) mesh.positions.push_back({10.0 * sheet + x, 10.0 * sheet + y, 0});
+    for (std::uint32_t y = 0; y < 10; ++y)
+      for (std::uint32_t x = 0; x < 10; ++x) {
+        const std::uint32_t v = first + 11 * y + x;
+        mesh.faces.push_back({v, v + 1, v + 12});
+        mesh.faces.push_back({v, v + 12, v + 11});
+      }
+  }
+  return mesh;
+}
+
+TEST(MergeAtOnePlace, VerticesOfDifferentChartsStayTwo) {
+  TempRepository repository(touching_sheets(), 200);
+  const MeshInfo before = repository->snapshot().info();
+  ASSERT_EQ(before.charts, 2U);
+  const std::vector<ChartId> both = repository->snapshot().find({{WholeMesh{}}, 0});
+  auto mine = repository->begin_edit(), theirs = repository->begin_edit();
+  // The faces at the place go from one sheet, and the vertex stays; others change the other sheet and this one
+  // elsewhere.
+  Patch &mine_patch = mine.checkout({{OfCharts{{both[0]}}}, 0}), &theirs_patch = theirs.checkout({{OfCharts{both}}, 0});
+  mine_patch.mesh().request_face_status();
+  mine_patch.mesh().request_edge_status();
+  mine_patch.mesh().request_vertex_status();
+  const auto at_place = [&](Patch& patch, Patch::Mesh::VertexHandle v) {
+    const auto p = patch.mesh().point(v);
+    return std::abs(p[0] - 10) + std::abs(p[1] - 10) < 0.5;
+  };
+  for (const auto f : mine_patch.mesh().all_faces())
+    for (auto v = mine_patch.mesh().cfv_iter(f); v.is_valid(); ++v)
+      if (at_place(mine_patch, *v)) {
+        mine_patch.mesh().delete_face(f, false);
+        break;
+      }
+  const double step = repository->snapshot().lattice().step;
+  for (const auto v : theirs_patch.mesh().vertices()) {
+    const auto p = theirs_patch.mesh().point(v);
+    if (std::abs(p[0] - 3) + std::abs(p[1] - 3) < 0.5 || std::abs(p[0] - 15) + std::abs(p[1] - 15) < 0.5)
+      theirs_patch.mesh().point(v)[2] += 20 * step;
+  }
+  (void)theirs.commit(message("elsewhere"));
+  CommitOptions merging = message("mine");
+  merging.merge = true;
+  ASSERT_TRUE(mine.commit(merging).conflicts.empty());
+  EXPECT_EQ(repository->snapshot().info().vertices, before.vertices);
+  EXPECT_TRUE(repository->verify({}).ok());
+}
+
 }  // namespace
 }  // namespace ramcdb::test

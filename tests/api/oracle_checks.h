@@ -33,6 +33,20 @@ inline void explain(const Model& expected, const Model& is, const std::string& w
   };
   list("missing", missing);
   list("instead", other);
+  const FaceSet faces = face_set(expected.points, expected.faces), there = face_set(is.points, is.faces);
+  const auto list_faces = [&](const char* name, const FaceSet& mine, const FaceSet& others) {
+    FaceSet only;
+    std::ranges::set_difference(mine, others, std::back_inserter(only));
+    for (std::size_t i = 0; i < std::min<std::size_t>(only.size(), 10); ++i) {
+      std::cout << "  face " << name << ':';
+      for (const LatticePoint p : only[i]) std::cout << ' ' << p.x << ',' << p.y << ',' << p.z;
+      std::cout << '\n';
+      for (const LatticePoint p : only[i])
+        if (sides) sides->tell(p);
+    }
+  };
+  list_faces("missing", faces, there);
+  list_faces("instead", there, faces);
 }
 
 /// What info and the index say is what the mesh has.

@@ -306,12 +306,17 @@ class Oracle {
     EXPECT_TRUE(repository_.commit_file(work.file, options(work.branch)).nothing_changed) << what_;
   }
 
-  /// What a merged file brought is not brought twice.
+  /// What a merged file brought is not brought twice. A file without ids may tell vertices at one place apart otherwise
+  /// than before.
   void commit_again(const Work& work) {
+    if (family_.weird && work.file.extension() != ".ply") return;
     CommitOptions committing = options(work.branch);
     committing.merge = true;
     const CommitReport report = repository_.commit_file(work.file, committing);
-    EXPECT_TRUE(report.nothing_changed || !report.conflicts.empty()) << what_ << ": committed twice";
+    EXPECT_TRUE(report.nothing_changed || !report.conflicts.empty())
+        << what_ << ": committed twice, " << report.vertices_moved << " vertices moved, " << report.vertices_added
+        << " added, " << report.vertices_removed << " removed, faces " << report.faces_added << " added, "
+        << report.faces_removed << " removed";
     again_ += report.nothing_changed;
   }
 
