@@ -33,6 +33,14 @@ inline void explain(const Model& expected, const Model& is, const std::string& w
   };
   list("missing", missing);
   list("instead", other);
+  std::vector<std::pair<LatticePoint, Model::Color>> lost;
+  std::ranges::set_difference(expected.known_colors(), is.known_colors(), std::back_inserter(lost));
+  for (std::size_t i = 0; i < std::min<std::size_t>(lost.size(), 10); ++i) {
+    const auto& [p, color] = lost[i];
+    std::cout << "  missing colour " << color[0] << ' ' << color[1] << ' ' << color[2] << " at " << p.x << ' ' << p.y
+              << ' ' << p.z << '\n';
+    if (sides) sides->tell(p);
+  }
   const FaceSet faces = face_set(expected.points, expected.faces), there = face_set(is.points, is.faces);
   const auto list_faces = [&](const char* name, const FaceSet& mine, const FaceSet& others) {
     FaceSet only;
