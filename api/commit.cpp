@@ -132,6 +132,15 @@ std::function<bool(ChartId)> recut_rule(const PendingEdit& edit, const CommitOpt
   };
 }
 
+/// The chart, of those that are there, that takes what an edit adds apart from everything: not one that only others
+/// changed.
+ChartId home_in(const PendingEdit& edit, const std::vector<ChartId>& charts) {
+  const auto is_there = [&](ChartId id) { return std::ranges::binary_search(charts, id); };
+  if (edit.edited.home && is_there(edit.edited.home)) return edit.edited.home;
+  const auto first = std::ranges::find_if(edit.region.charts, is_there);
+  return first == edit.region.charts.end() ? ChartId() : *first;
+}
+
 /// The charts that an edit touches, as a tip has them, and the edit of these: all that it holds, as a rule, of the very
 /// tip.
 EncodedEdit encode_on(const Snapshot::Impl& tip, const PendingEdit& edit, const CommitOptions& options) {
@@ -142,6 +151,7 @@ EncodedEdit encode_on(const Snapshot::Impl& tip, const PendingEdit& edit, const 
   const RegionPart part{&tip, {edit.changes.touched.begin(), edit.changes.touched.end()}};
   RegionMesh region = load_region(std::span(&part, 1), options.threads, nullptr, true);
   EditedRegion edited = transferred(edit.edited, edit.region, region);
+  edited.home = home_in(edit, region.charts);
   return encode_edit(tip, std::move(region), std::move(edited), may_recut, options.threads);
 }
 
@@ -193,9 +203,7 @@ std::optional<EncodedEdit> merge_on(const Snapshot::Impl& tip, const PendingEdit
     for (MergeConflict& conflict : report.conflict_places) conflict.mesh = report.mesh;
     return std::nullopt;
   }
-  const auto there = std::ranges::find_if(edit.region.charts,
-                                          [&](ChartId id) { return std::ranges::binary_search(theirs.charts, id); });
-  if (there != edit.region.charts.end()) merged.edited.home = *there;  // not one that only others changed
+  merged.edited.home = home_in(edit, theirs.charts);
   report.conflicts.clear();
   report.merged = true;
   return encode_edit(tip, std::move(theirs), std::move(merged.edited), recut_rule(edit, options, true),

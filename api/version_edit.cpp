@@ -186,6 +186,8 @@ PendingEdit edit_between(const Snapshot::Impl& from, const Snapshot::Impl& to, u
   const RegionMesh mesh = load_region(std::span(&part, 1), threads, nullptr, true);
   edit.edited = mesh_as_edit(from, edit.region, mesh, equal);
   if (within) edit.edited = limited(from, edit.region, edit.edited, mesh, limits_of(*within, from, to));
+  const auto& own = difference.changed.empty() ? difference.removed : difference.changed;
+  if (!own.empty()) edit.edited.home = own.front();  // rather than a neighbour
   edit.changes = changes_of(from, edit.region, edit.edited);
   return edit;
 }

@@ -483,7 +483,7 @@ class Oracle {
       EXPECT_TRUE(std::includes(have.begin(), have.end(), wanted.begin(), wanted.end())) << what_ << ": colours";
     }
     expect_counts(after, is, expected, what_);
-    charts_.add(expect_charts(before, after, region, family_.chart_faces, what_));
+    charts_.add(expect_charts(before, after, region, sides ? 1 : 0, family_.chart_faces, what_));
     check_repository(after, branch);
     if (!same || after.version() == tip) return;
     for (std::uint32_t v = 0; v < is.ids.size(); ++v) is.ids[v] = expected.ids[(*same)[v]];
