@@ -163,11 +163,13 @@ void Store::create(const fs::path& folder) {
 
 std::shared_ptr<Store> Store::open(const fs::path& folder, Access access) {
   const Layout layout(folder);
-  std::error_code ignored;
-  if (!fs::is_regular_file(layout.catalogue, ignored))
+  std::error_code failure;
+  if (!fs::is_regular_file(layout.catalogue, failure)) {
+    if (failure == std::errc::permission_denied) throw Error(Errc::storage, failure.message(), folder.string());
     throw Error(Errc::not_found, "not a repository", folder.string(),
-                fs::is_regular_file(layout.blobs, ignored) ? "its catalogue.sqlite is missing: restore it from a backup"
+                fs::is_regular_file(layout.blobs, failure) ? "its catalogue.sqlite is missing: restore it from a backup"
                                                            : "make one with `ramcdb init`");
+  }
   Registry& registry = Registry::get();
   const std::lock_guard<std::mutex> alone(registry.mutex);
   std::weak_ptr<StoreImpl>& entry = registry.open[registry_key(layout)];

@@ -130,16 +130,28 @@ TEST(RoundTrip, AKeyIsPutOnce) {
   EXPECT_TRUE(problems(*store).empty());
 }
 
+/// Expects that opening the store to write fails; root opens it as somebody else, since root may write everything.
+void expect_no_opening(const TempStore& temp, const std::string& part_of_text) {
+  ChildProcess child([&] {
+    if (::geteuid() == 0 && ::setuid(65534) != 0) FAIL() << "root stays root";
+    expect_error(Errc::storage, part_of_text, [&] { (void)temp.open(Access::write); });
+  });
+  EXPECT_EQ(child.wait(), 0);
+}
+
 TEST(RoundTrip, FilesThatMayNotBeWrittenGiveAnError) {
   const TempStore temp;
   publish(*temp.open(), {make_blob(Kind::chart, 1, 100)});
+  fs::permissions(temp.folder().parent_path(), fs::perms::group_exec | fs::perms::others_exec, fs::perm_options::add);
   for (const auto& entry : fs::directory_iterator(temp.folder())) fs::permissions(entry.path(), fs::perms::owner_read);
-  ChildProcess child([&] {
-    // Root may write whatever the permissions say.
-    if (::geteuid() == 0 && ::setuid(65534) != 0) FAIL() << "root stays root";
-    expect_error(Errc::storage, "must be writable", [&] { (void)temp.open(Access::write); });
-  });
-  EXPECT_EQ(child.wait(), 0);
+  expect_no_opening(temp, "must be writable");
+}
+
+TEST(RoundTrip, AFolderThatMayNotBeEnteredIsNotTakenForNoRepository) {
+  const TempStore temp;
+  fs::permissions(temp.folder(), fs::perms::none);
+  expect_no_opening(temp, "Permission denied");
+  fs::permissions(temp.folder(), fs::perms::owner_all);
 }
 
 TEST(MeshIds, AreGivenOnceAndEnd) {
