@@ -156,7 +156,7 @@ class WireGroupCoder {
 
   void run() {
     const std::uint32_t wires = wires_.code(coder_, static_cast<std::uint32_t>(group_.members_.size()));
-    if (wires == 0 || wires > kMostPoints) corrupt_wires("no wires, or too many");
+    if (wires == 0 || wires > kWireGroupPoints) corrupt_wires("no wires, or too many");
     const int expected = static_cast<int>(coder_.code_raw(Coder::kEncodes ? first_width() : 0, 5));
     ResidualCoder residuals(expected);
     for (std::uint32_t w = 0; w < wires; ++w) {
@@ -184,6 +184,7 @@ class WireGroupCoder {
   }
 
   void code_head(WireGroup::Member& member) {
+    if (points_so_far_ >= kWireGroupPoints) corrupt_wires("a wire too many");
     const std::uint32_t skipped = skipped_.code(coder_, member.id.value - last_id_ - 1);
     if (skipped >= ~std::uint32_t{0} - last_id_) corrupt_wires("its ids do not ascend");
     member.id = WireId(last_id_ += skipped + 1);
@@ -210,6 +211,7 @@ Buffer encode_wires(std::span<const WireOfGroup> wires) {
     require_codable(wire);
     if (!group.members_.empty() && wire.id <= group.members_.back().id)
       throw Error(Errc::invalid_argument, "the ids of wires to be coded ascend");
+    if (points >= kWireGroupPoints) throw Error(Errc::invalid_argument, "more wires than a blob takes");
     const auto count = wire.wire->points.size() - 2;
     if ((points += count) > kMostPoints)
       throw Error(Errc::limit_exceeded, "wires have too many points", {}, "use smaller charts");

@@ -92,16 +92,29 @@ TEST(WireCodec, WiresComeBack) {
 
 TEST(WireCodec, WiresOfAGroupComeBackOneByOne) {
   const std::vector<Wire> all = wires();
-  const std::vector<WireOfGroup> group = numbered(all);
-  const Buffer blob = encode_wires(group);
-  const WireGroup decoded(blob);
-  for (const WireOfGroup& each : group) {
-    const Wire& wire = *each.wire;
-    EXPECT_EQ(decoded.wire(each.id, wire.points.front(), wire.points.back(), inner_points(wire)), wire);
+  const std::vector<WireOfGroup> numbers = numbered(all);
+  std::size_t together = 0, alone = 0;
+  for (const CodedWireGroup& group : encode_in_groups(numbers)) {
+    const WireGroup decoded(group.blob);
+    for (const WireOfGroup& each : std::span(numbers).subspan(group.first, group.count)) {
+      const Wire& wire = *each.wire;
+      EXPECT_EQ(decoded.wire(each.id, wire.points.front(), wire.points.back(), inner_points(wire)), wire);
+    }
+    together += group.blob.size();
   }
-  std::size_t alone = 0;
   for (const Wire& wire : all) alone += encode(wire).size();
-  EXPECT_LT(blob.size(), alone);
+  EXPECT_LT(together, alone);
+}
+
+TEST(WireCodec, AFullBlobTakesNoFurtherWire) {
+  const Wire nearly = walk(kWireGroupPoints - 1, 3, 1), full = walk(kWireGroupPoints, 3, 1), next = line(5, {1, 2, 3});
+  const std::vector<WireOfGroup> legal{{WireId(1), &nearly}, {WireId(2), &full}},
+      too_many{{WireId(1), &full}, {WireId(2), &next}};
+  EXPECT_EQ(WireGroup(encode_wires(legal)).ids().size(), 2U);
+  EXPECT_THROW((void)encode_wires(too_many), Error);
+  // What an encoder without that rule wrote for points that are all the same.
+  const Buffer hostile{0x10, 0x40, 0x80, 0x38, 0x0f, 0xff, 0xff, 0x7f, 0xff, 0xa2};
+  EXPECT_THROW((void)WireGroup(hostile), Error);
 }
 
 TEST(WireCodec, AWireStaysReadableWhenTheEndsOfOthersMove) {
@@ -129,7 +142,8 @@ TEST(WireCodec, OtherWiresAndOtherCountsAreRefused) {
 }
 
 TEST(WireCodec, SharesOfABlobAddUp) {
-  const std::vector<Wire> all = wires();
+  const std::vector<Wire> all{line(200, {13, -4, 1}), walk(9, 40, 3), circle(60, 5000), extremes(40),
+                              line(1, {0, 0, 0})};
   const std::vector<WireOfGroup> group = numbered(all);
   const WireGroup decoded(encode_wires(group));
   std::uint64_t sum = 0;
