@@ -81,7 +81,7 @@ EditedFile read_edited_file(const std::shared_ptr<db::Store>& store, const std::
   try {
     FileEdit found = edited_in_file(at, edit.region, data, edited.sidecar.local_origin, trust_ids);
     edit.edited = std::move(found.edited);
-    edit.notes = {std::move(found.frame), found.snapped_back, found.attributes_missing, found.values_made_up};
+    edit.notes = std::move(found.notes);
     edit.changes = changes_of(at, edit.region, edit.edited);
   } catch (const Error& e) {
     throw Error(e.code(), fmt::format("{}: {}", file.string(), e.what()));

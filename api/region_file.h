@@ -40,15 +40,12 @@ void check_paint(mesh_file::Format format, Paint paint, const std::filesystem::p
 /// What an edited file makes of the region that it was written from.
 struct FileEdit {
   EditedRegion edited;
-  std::string frame;                     ///< which change of axes or units was undone; empty for none
-  std::uint64_t snapped_back = 0;        ///< vertices of the outer border that only rounding had moved
-  std::uint64_t attributes_missing = 0;  ///< attributes that the file has nothing for
-  std::uint64_t values_made_up = 0;      ///< values of new vertices, corners and faces from the surface that was there
+  FileNotes notes;
 };
 
 /// Faces and vertices are recognized whatever a program did to them in between (region_match.h); what is not is new.
 /// Attributes are found by their names, or else by what they mean; those that the file lacks stay, new vertices and
-/// faces then have values from the surface that was there, and what the file has in addition is no edit. Throws
+/// faces then have values from the surface that was there, and what the file has in addition is not taken. Throws
 /// invalid_argument for positions that the lattice does not have.
 /// \param trust_ids vertex ids in the file refer to this very region.
 [[nodiscard]] FileEdit edited_in_file(const Snapshot::Impl& at, const RegionMesh& region,

@@ -185,20 +185,22 @@ FileEdit edited_in_file(const Snapshot::Impl& at, const RegionMesh& region, cons
   std::vector<Point> written = data.positions;
   if (const auto frame = find_frame(region, at.record().lattice, local_origin, written)) {
     for (Point& p : written) p = frame->apply(p);
-    found.frame = frame->describe();
+    found.notes.frame = frame->describe();
   }
   FileMesh file(data, written, at.record(), local_origin);
   const std::span<const std::uint64_t> ids = trust_ids ? data.vertex_ids : std::span<const std::uint64_t>();
   const MatchedRegion matched = match_region(region, file.as_other(ids, repeats_vertices(data)));
   const double loss = coordinate_loss(relative_positions(at, region, local_origin), written);
-  found.snapped_back =
+  found.notes.snapped_back =
       snap_back_border(region, at.record().lattice, matched.match, loss, file.positions, file.points).vertices;
   FileEditBuilder builder(at, region, matched, file);
   found.edited = builder.run();
   if (!region.attributes.empty()) {
-    found.attributes_missing = take_values(data, builder.take_places(), found.edited.mesh);
-    found.values_made_up = interpolate_new(region, found.edited);
+    found.notes.attributes_missing = take_values(data, builder.take_places(), found.edited.mesh);
+    found.notes.values_interpolated = interpolate_new(region, found.edited);
   }
+  for (const Attribute* unused : attributes_without_place(data, region))
+    found.notes.not_taken.push_back(unused->info.name);
   return found;
 }
 

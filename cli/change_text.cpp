@@ -1,5 +1,7 @@
 #include "cli/change_text.h"
 
+#include <fmt/format.h>
+
 #include "cli/chart_list.h"
 #include "cli/name_text.h"
 #include "cli/table.h"
@@ -95,6 +97,8 @@ std::string notes_text(const FileNotes& notes) {
             " of what is new, from the surface that was there\n";
   if (notes.attributes_missing)
     text += "not in the file   " + counted(notes.attributes_missing, "attribute") + ", kept as before\n";
+  if (!notes.not_taken.empty())
+    text += fmt::format("not taken         {}: the mesh has no such attributes\n", fmt::join(notes.not_taken, ", "));
   return text;
 }
 

@@ -135,6 +135,7 @@ Json of(const FileNotes& notes) {
   return {{"frame", notes.frame},
           {"snapped_back", notes.snapped_back},
           {"attributes_missing", notes.attributes_missing},
+          {"attributes_not_taken", notes.not_taken},
           {"values_interpolated", notes.values_interpolated}};
 }
 

@@ -357,7 +357,7 @@ class LayerWalk {
   bool some_absent_, is_direction_;
   std::size_t components_;
   std::vector<bool> known_;
-  std::array<Component, 16> components_models_;
+  std::vector<Component> components_models_{components_};
   std::array<AdaptiveBit, 10> same_;
   std::array<AdaptiveBit, 6> absent_;
   bool absent_before_ = false;

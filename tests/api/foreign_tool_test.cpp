@@ -130,6 +130,25 @@ TEST_F(ForeignTool, UneditedInAnyOrderAndFormatIsUnchanged) {
   EXPECT_EQ(repository_->resolve("HEAD"), VersionId(1));
 }
 
+TEST_F(ForeignTool, AttributesThatItAddedAreNamedAndNotTaken) {
+  check_out("region.ply", {3, 4});
+  mesh_file::MeshData data = mesh_file::read_mesh(file_);
+  const std::size_t vertices = data.positions.size();
+  data.attributes = {{{"quality", AttributeOf::vertex, NumberType::float32, 1, Meaning::other, {}, {}}, {}},
+                     {{"color", AttributeOf::vertex, NumberType::uint8, 3, Meaning::color, {}, {}}, {}}};
+  data.attributes[0].values.assign(vertices, 0.5);
+  data.attributes[1].values.assign(3 * vertices, 200);
+  (void)mesh_file::write_mesh(file_, mesh_file::Format::ply, mesh_file::output_of(data, mesh_file::Scalar::float64));
+  const std::vector<std::string> names{"quality", "color"};
+  EXPECT_EQ(repository_->status_file(file_).notes.not_taken, names);
+  EXPECT_TRUE(repository_->status_file(file_).clean());
+  data.positions[0].x += 20 * repository_->snapshot().lattice().step;
+  (void)mesh_file::write_mesh(file_, mesh_file::Format::ply, mesh_file::output_of(data, mesh_file::Scalar::float64));
+  const CommitReport report = repository_->commit_file(file_, message("painted"));
+  EXPECT_EQ(report.vertices_moved, 1U);
+  EXPECT_EQ(report.notes.not_taken, names);
+}
+
 TEST_F(ForeignTool, MovedAndKeptInOrder) {
   check_out("region.ply", {3, 4});
   FileMesh mesh = read(file_);

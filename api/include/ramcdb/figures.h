@@ -119,6 +119,7 @@ struct FileNotes {
   std::string frame;                      ///< which change of axes or units was undone; empty for none
   std::uint64_t snapped_back = 0;         ///< vertices of the region's border that only rounding had moved
   std::uint64_t attributes_missing = 0;   ///< attributes that the file has nothing for: they stay
+  std::vector<std::string> not_taken;     ///< attributes of the file that the mesh does not have
   std::uint64_t values_interpolated = 0;  ///< of new vertices, corners and faces, from the surface that was there
 };
 
