@@ -22,7 +22,8 @@ struct WireOfGroup {
 };
 
 /// Codes the inner points of wires into one blob; their ends are corners, known from the wire-net. Ids ascend, every
-/// wire has inner points, and all but the last have fewer than kWireGroupPoints. Equal input gives equal bytes on every machine. Throws invalid_argument and limit_exceeded.
+/// wire has inner points, and all but the last have fewer than kWireGroupPoints. Equal input gives equal bytes on every
+/// machine. Throws invalid_argument and limit_exceeded.
 [[nodiscard]] Buffer encode_wires(std::span<const WireOfGroup> wires);
 
 /// The blob of a group of wires, some that follow one another in a list.

@@ -43,7 +43,7 @@ std::string binary(const std::string& faces, const std::string& header = kFace) 
 
 std::string list(const std::string& types) { return "element face 1\nproperty list " + types + " vertex_indices\n"; }
 
-const float kNan = std::numeric_limits<float>::quiet_NaN();
+const float kFloatNan = std::numeric_limits<float>::quiet_NaN();
 
 std::vector<BadFile> headers() {
   return {
@@ -211,7 +211,7 @@ std::vector<BadFile> binary_bodies() {
       {"binary-index-negative", binary(indices(0, 1, -1)), "-1 is negative (a.ply, byte"},
       {"binary-face-of-two", binary("\x02" + bytes_of(0) + bytes_of(1) + bytes_of(2)),
        "a face has 2 corners (a.ply, byte"},
-      {"binary-nan", kLittle + "element vertex 1\n" + kXyz + kEnd + bytes_of(0.F) + bytes_of(kNan) + bytes_of(0.F),
+      {"binary-nan", kLittle + "element vertex 1\n" + kXyz + kEnd + bytes_of(0.F) + bytes_of(kFloatNan) + bytes_of(0.F),
        "vertex 0 has a coordinate that is not finite (a.ply)"},
       {"binary-big-read-as-little", kLittle + kVertices + kFace + kEnd + corners(true) + indices(0, 1, 2), "reads 3 1"},
       {"binary-little-read-as-big", kBig + kVertices + kFace + kEnd + corners() + indices(0, 1, 2),

@@ -104,7 +104,7 @@ std::vector<Attribute> unreserved(std::vector<Attribute> attributes) {
 }
 
 TEST(Damaged, WhatIsReadIsWritten) {
-  const ScratchFolder scratch;
+  const TempFolder scratch;
   for (const Sample& sample : samples())
     for (std::size_t at = 0; at<sample.bytes.size(); at += sample.bytes.size()> 2000 ? 7 : 1) {
       std::string bytes = sample.bytes;
@@ -112,7 +112,7 @@ TEST(Damaged, WhatIsReadIsWritten) {
       try {
         const auto mesh = read_text(sample.name, bytes);
         for (const char* name : {"a.ply", "a.obj", "a.off"}) {
-          const auto file = scratch.file(name);
+          const auto file = scratch / name;
           (void)mesh_file::write_mesh(file, mesh_file::format_of(file), output_of(mesh, mesh_file::Scalar::float64));
           const auto again = mesh_file::read_mesh(file);
           ASSERT_TRUE(is_sound(again)) << sample.name << ' ' << at << ' ' << name;
@@ -121,7 +121,7 @@ TEST(Damaged, WhatIsReadIsWritten) {
           if (mesh_file::format_of(sample.name) == mesh_file::format_of(name))
             expect_same(unreserved(again.attributes), unreserved(mesh.attributes));
         }
-        expect_written_as_gltf(mesh, scratch.file(sample.name + ".glb"));
+        expect_written_as_gltf(mesh, scratch / (sample.name + ".glb"));
       } catch (const Error& error) {
         EXPECT_NE(std::string(error.what()).find(sample.name), std::string::npos) << error.what();
       }

@@ -1,7 +1,6 @@
 #include "tests/api/mesh_file/files.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <algorithm>
 #include <bit>
@@ -11,19 +10,9 @@
 #include <memory>
 
 #include "ramcdb/error.h"
+#include "tests/api/mesh_file/gltf_builder.h"
 
 namespace ramcdb::test {
-
-ScratchFolder::ScratchFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "ramcdb_files_XXXXXX").string();
-  if (!::mkdtemp(pattern.data())) throw std::runtime_error("no scratch folder");
-  folder_ = pattern;
-}
-
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
-}
 
 void write_bytes(const std::filesystem::path& file, std::string_view bytes) {
   std::filesystem::remove(file);  // many times faster than truncating on file systems that flush truncated files
@@ -42,6 +31,12 @@ mesh_file::MeshData read_text(std::string_view name, std::string_view bytes) {
   const auto exact = std::make_unique<char[]>(bytes.size());
   std::copy(bytes.begin(), bytes.end(), exact.get());
   return mesh_file::read_mesh_bytes({exact.get(), bytes.size()}, mesh_file::format_of(name), name);
+}
+
+mesh_file::MeshData read_glb(const GltfBuilder& file) {
+  auto mesh = read_text("a.glb", file.glb());
+  EXPECT_TRUE(is_sound(mesh));
+  return mesh;
 }
 
 std::string refusal(std::string_view name, std::string_view bytes) {
@@ -137,8 +132,8 @@ mesh_file::MeshData polygon_grid(std::uint32_t columns) {
 
 mesh_file::MeshData write_and_read(std::string_view name, const mesh_file::MeshOutput& out, bool ascii,
                                    std::vector<mesh_file::Dropped>* dropped) {
-  const ScratchFolder scratch;
-  const auto file = scratch.file(name);
+  const TempFolder scratch;
+  const auto file = scratch / std::string(name);
   const auto left_out = mesh_file::write_mesh(file, mesh_file::format_of(file), out, ascii);
   if (dropped)
     *dropped = left_out;

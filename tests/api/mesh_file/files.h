@@ -2,36 +2,35 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "api/mesh_file/mesh_file.h"
 #include "tests/api/mesh_file/sound_mesh.h"
+#include "tests/support/temp_folder.h"
 
 /// Small files for the tests of readers and writers.
 namespace ramcdb::test {
 
-/// A folder of its own per object, removed with it.
-class ScratchFolder {
- public:
-  ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
+class GltfBuilder;
 
-  [[nodiscard]] std::filesystem::path file(std::string_view name) const { return folder_ / name; }
-  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
-
- private:
-  std::filesystem::path folder_;
-};
+/// A number that is none, and a value of an attribute that is not there.
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+/// The corners of a square, as an OBJ file has them.
+inline const std::string kFour = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+/// Real meshes with larger files are left out: the tests of each stay below a minute.
+inline constexpr std::uintmax_t kLargestRealFile = 30'000'000;
 
 void write_bytes(const std::filesystem::path& file, std::string_view bytes);
 [[nodiscard]] std::string read_bytes(const std::filesystem::path& file);
 
 /// Reads bytes as a file of this name; the extension chooses the format.
 [[nodiscard]] mesh_file::MeshData read_text(std::string_view name, std::string_view bytes);
+
+/// Reads a built file; the test fails when the mesh is not sound.
+[[nodiscard]] mesh_file::MeshData read_glb(const GltfBuilder& file);
 
 /// The text of the ramcdb::Error that reading throws; fails the test and returns "" when none is thrown, when it does
 /// not name the file, or does not say how to go on.

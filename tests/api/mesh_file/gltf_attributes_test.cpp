@@ -17,23 +17,15 @@ using mesh_file::Scalar;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-mesh_file::MeshData read(const GltfBuilder& file) {
-  auto mesh = read_text("a.glb", file.glb());
-  EXPECT_TRUE(is_sound(mesh));
-  return mesh;
-}
-
 /// The square with one more attribute.
 mesh_file::MeshData with(GltfBuilder file, const char* name, std::size_t accessor, bool normalized = false) {
   file.json["accessors"][accessor]["normalized"] = normalized;
   file.json["meshes"][0]["primitives"][0]["attributes"][name] = accessor;
-  return read(file);
+  return read_glb(file);
 }
 
 TEST(GltfAttributes, NamesTypesAndMeanings) {
-  const auto mesh = read(gltf_sample());
+  const auto mesh = read_glb(gltf_sample());
   struct Expected {
     const char* name;
     AttributeOf of;
@@ -98,7 +90,7 @@ TEST(GltfAttributes, TypesThatDiffer) {
   file.json["accessors"][bytes]["normalized"] = true;
   file.json["meshes"][0]["primitives"][0]["attributes"].update({{"COLOR_0", bytes}, {"_A", words}});
   file.add_mesh({{"attributes", {{"POSITION", 0}, {"COLOR_0", floats}, {"_A", small}}}});
-  const auto mesh = read(file);
+  const auto mesh = read_glb(file);
   const Attribute color = find(mesh, "color"), a = find(mesh, "A");
   EXPECT_EQ(color.info.type, NumberType::float32);
   EXPECT_EQ(color.values[0], 1);
@@ -115,9 +107,9 @@ TEST(GltfAttributes, DirectionsAreTurnedWithTheirNodes) {
   const auto tangents = file.add<float>({1, 0, 0, 1, s, s, 0, -1, 0, 0, 0, 1, 0, 1, 0, 1}, kFloat, "VEC4");
   file.json["meshes"][0]["primitives"][0]["attributes"].update({{"NORMAL", normals}, {"TANGENT", tangents}});
   file.json["nodes"][0]["translation"] = {1, 2, 3};
-  EXPECT_EQ(find(read(file), "normal").values[0], static_cast<double>(s)) << "a translation leaves every bit";
+  EXPECT_EQ(find(read_glb(file), "normal").values[0], static_cast<double>(s)) << "a translation leaves every bit";
   file.json["nodes"][0]["scale"] = {-2, 1, 1};
-  const auto mesh = read(file);
+  const auto mesh = read_glb(file);
   const auto n = find(mesh, "normal").values, t = find(mesh, "TANGENT").values;
   EXPECT_NEAR(n[0], -1 / std::sqrt(5.0), 1e-7);
   EXPECT_NEAR(n[1], 2 / std::sqrt(5.0), 1e-7);
@@ -146,7 +138,7 @@ TEST(GltfAttributes, NamesOfOthersGoInAndComeOut) {
                      {"_nine", nine},
                      {"_sixteen", sixteen},
                      {"_colorful", one}});
-  auto mesh = read(file);
+  auto mesh = read_glb(file);
   for (const char* name :
        {"A", "_normal", "_color_2", "_JOINTS_0", "_b", "_", "_object", "nine", "sixteen", "colorful"})
     EXPECT_EQ(find(mesh, name).info.meaning, Meaning::other) << name;
@@ -159,7 +151,7 @@ TEST(GltfAttributes, NamesOfOthersGoInAndComeOut) {
 }
 
 TEST(GltfAttributes, AllThatIsReadComesBack) {
-  auto mesh = read(gltf_sample());
+  auto mesh = read_glb(gltf_sample());
   mesh.references.clear();
   // Vertices without a value, where those of all of an object have none, stay so; a material without a name has one.
   for (const char* name : {"b.glb", "b.gltf"}) {
@@ -175,16 +167,16 @@ TEST(GltfAttributes, EqualNamesAreKeptApart) {
   for (int i = 0; i < 3; ++i) file.json["nodes"].push_back({{"mesh", 0}, {"name", "bolt"}});
   file.json["nodes"].push_back({{"mesh", 0}, {"name", "bolt_2"}});
   file.json["nodes"].push_back({{"mesh", 0}});
-  const auto names = find(read(file), "object").info.names;
+  const auto names = find(read_glb(file), "object").info.names;
   EXPECT_THAT(names, ElementsAre("object_0", "bolt", "bolt_3", "bolt_4", "bolt_2", "object_5"));
 }
 
 TEST(GltfAttributes, MeshNamesWhereNodesHaveNone) {
   GltfBuilder file = gltf_square();
   file.json["meshes"][0]["name"] = "mesh";
-  EXPECT_THAT(find(read(file), "object").info.names, ElementsAre("mesh"));
+  EXPECT_THAT(find(read_glb(file), "object").info.names, ElementsAre("mesh"));
   file.json["nodes"][0]["name"] = "node";
-  const auto mesh = read(file);
+  const auto mesh = read_glb(file);
   EXPECT_THAT(find(mesh, "object").info.names, ElementsAre("node"));
   EXPECT_EQ(dropped(mesh, "names of meshes whose nodes have names"), 1U);
 }
@@ -193,14 +185,14 @@ TEST(GltfAttributes, FacesWithoutMaterial) {
   GltfBuilder file = gltf_square();
   file.json["materials"] = {{{"name", "a"}}};
   file.json["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}, {"indices", 1}, {"material", 0}});
-  const auto mesh = read(file);
+  const auto mesh = read_glb(file);
   EXPECT_THAT(find(mesh, "material").info.names, ElementsAre("a", ""));
   EXPECT_THAT(find(mesh, "material").values, ElementsAre(1, 1, 0, 0));
   expect_same(write_and_read("b.glb", output_of(mesh, Scalar::float32), false).attributes, mesh.attributes);
 }
 
 TEST(GltfAttributes, VertexIdsComeBack) {
-  auto mesh = read(gltf_square());
+  auto mesh = read_glb(gltf_square());
   mesh.vertex_ids = {7, 0xffffffffffffffffU, 0x0123456789abcdefU, 0};
   EXPECT_EQ(write_and_read("b.glb", output_of(mesh, Scalar::float32), false).vertex_ids, mesh.vertex_ids);
 }
@@ -209,16 +201,16 @@ TEST(GltfAttributes, IdsThatSomeLackAreAnAttribute) {
   GltfBuilder file = gltf_square();
   const auto ids = file.add<std::uint16_t>(std::vector<std::uint16_t>(16, 1), kUshort, "VEC4");
   file.json["meshes"][0]["primitives"][0]["attributes"]["_RAMCDB_ID"] = ids;
-  EXPECT_EQ(read(file).vertex_ids, (std::vector<std::uint64_t>(4, 0x0001000100010001U)));
+  EXPECT_EQ(read_glb(file).vertex_ids, (std::vector<std::uint64_t>(4, 0x0001000100010001U)));
   file.add_mesh({{"attributes", {{"POSITION", 0}}}});
   file.json["nodes"][1]["scale"] = {2, 2, 2};
-  const auto mesh = read(file);
+  const auto mesh = read_glb(file);
   EXPECT_TRUE(mesh.vertex_ids.empty());
   EXPECT_EQ(find(mesh, "RAMCDB_ID").values[0], 1);
 }
 
 TEST(GltfAttributes, CornersThatDifferMakeVertices) {
-  mesh_file::MeshData mesh = read(gltf_square());
+  mesh_file::MeshData mesh = read_glb(gltf_square());
   mesh.attributes = {attribute("texture", AttributeOf::corner, NumberType::float32, 2, Meaning::texture,
                                {0, 0, 1, 0, 1, 1, 0, 0, 0.5, 1, 0, 1})};
   std::vector<mesh_file::Dropped> left_out;
@@ -250,19 +242,19 @@ TEST(GltfAttributes, ManyCornersOfOneVertexTakeNoTime) {
 }
 
 TEST(GltfAttributes, WhatCannotBeHeldIsLeftOutOrSaid) {
-  mesh_file::MeshData mesh = read(gltf_square());
+  mesh_file::MeshData mesh = read_glb(gltf_square());
   mesh.references = {"mtllib a.mtl"};
   using enum AttributeOf;
   using enum NumberType;
   mesh.attributes = {
       attribute("normal", vertex, float64, 3, Meaning::normal, {0.1, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}),
-      attribute("texture", vertex, float64, 3, Meaning::texture, {0, 0, 1, 0, kNone, 1, 0, 0, 1, 0, 0, 1}),
+      attribute("texture", vertex, float64, 3, Meaning::texture, {0, 0, 1, 0, kNan, 1, 0, 0, 1, 0, 0, 1}),
       attribute("color", vertex, int16, 3, Meaning::color, std::vector<double>(12, 32767)),
       attribute("large", vertex, float64, 1, Meaning::other, {1e300, 0, 0, 0}),
       attribute("exact", vertex, int32, 1, Meaning::other, {1 << 24, -5, 0, 1}),
       attribute("inexact", vertex, int32, 1, Meaning::other, {(1 << 24) + 1, 0, 0, 0}),
       attribute("infinite", vertex, float32, 1, Meaning::other, {HUGE_VAL, 1, 2, 3}),
-      attribute("none", vertex, float32, 1, Meaning::other, std::vector<double>(4, kNone)),
+      attribute("none", vertex, float32, 1, Meaning::other, std::vector<double>(4, kNan)),
       attribute("five", vertex, float32, 5, Meaning::other, std::vector<double>(20, 1)),
       attribute("group", face, uint32, 1, Meaning::group, {0, 0}),
       attribute("smoothing", face, uint32, 1, Meaning::other, {1, 2}),
@@ -286,12 +278,12 @@ TEST(GltfAttributes, WhatCannotBeHeldIsLeftOutOrSaid) {
 }
 
 TEST(GltfAttributes, NoneStaysNone) {
-  mesh_file::MeshData mesh = read(gltf_square());
+  mesh_file::MeshData mesh = read_glb(gltf_square());
   mesh.attributes = {
       attribute("color", AttributeOf::vertex, NumberType::uint8, 3, Meaning::color,
-                {1, 2, 3, kNone, kNone, kNone, 0, 0, 0, 4, 5, 6}),
+                {1, 2, 3, kNan, kNan, kNan, 0, 0, 0, 4, 5, 6}),
       attribute("q", AttributeOf::vertex, NumberType::float32, 4, Meaning::other,
-                {1, 2, 3, 4, 5, 6, kNone, 8, kNone, 0, 0, 0, 0, 0, 0, kNone}),
+                {1, 2, 3, 4, 5, 6, kNan, 8, kNan, 0, 0, 0, 0, 0, 0, kNan}),
   };
   std::vector<mesh_file::Dropped> left_out;
   auto again = write_and_read("b.glb", output_of(mesh, Scalar::float32), false, &left_out);
@@ -299,7 +291,7 @@ TEST(GltfAttributes, NoneStaysNone) {
   EXPECT_EQ(left_out.size(), 2U) << "other programs see 0";
   // Corners without values, where others of the same vertex have some.
   mesh.attributes = {attribute("texture", AttributeOf::corner, NumberType::float32, 2, Meaning::texture,
-                               {kNone, kNone, 1, 0, 1, 1, 0, 0, 1, 1, kNone, kNone})};
+                               {kNan, kNan, 1, 0, 1, 1, 0, 0, 1, 1, kNan, kNan})};
   again = write_and_read("b.gltf", output_of(mesh, Scalar::float32), false, &left_out);
   ASSERT_EQ(again.positions.size(), 5U);
   const auto texture = find(again, "texture");
@@ -311,7 +303,7 @@ TEST(GltfAttributes, NoneStaysNone) {
 }
 
 TEST(GltfAttributes, NamesThatAreNoUtf8AreReplaced) {
-  mesh_file::MeshData mesh = read(gltf_square());
+  mesh_file::MeshData mesh = read_glb(gltf_square());
   mesh.attributes = {attribute("material", AttributeOf::face, NumberType::uint32, 1, Meaning::material, {0, 0})};
   mesh.attributes[0].info.names = {
       "m\xe4"

@@ -15,15 +15,9 @@ namespace {
 using testing::HasSubstr;
 using Corners = std::vector<std::uint32_t>;
 
-mesh_file::MeshData read(const GltfBuilder& file) {
-  auto mesh = read_text("a.glb", file.glb());
-  EXPECT_TRUE(is_sound(mesh));
-  return mesh;
-}
-
 TEST(Gltf, BothContainersSayTheSame) {
   const GltfBuilder file = gltf_sample();
-  const auto binary = read(file);
+  const auto binary = read_glb(file);
   EXPECT_EQ(binary.positions.size(), 12U);
   EXPECT_EQ(binary.face_count(), 6U);
   EXPECT_TRUE(binary.face_sizes.empty());
@@ -37,12 +31,12 @@ TEST(Gltf, BothContainersSayTheSame) {
 }
 
 TEST(Gltf, BufferBesideTheFile) {
-  const ScratchFolder scratch;
+  const TempFolder scratch;
   const GltfBuilder file = gltf_square();
-  std::filesystem::create_directory(scratch.file("sub folder"));
-  write_bytes(scratch.file("sub folder/a b.bin"), file.binary() + "more");
-  write_bytes(scratch.file("a.gltf"), file.gltf("sub%20folder/a%20b.bin"));
-  EXPECT_EQ(mesh_file::read_mesh(scratch.file("a.gltf")).face_count(), 2U);
+  std::filesystem::create_directory(scratch / "sub folder");
+  write_bytes(scratch / "sub folder/a b.bin", file.binary() + "more");
+  write_bytes(scratch / "a.gltf", file.gltf("sub%20folder/a%20b.bin"));
+  EXPECT_EQ(mesh_file::read_mesh(scratch / "a.gltf").face_count(), 2U);
   // As the command line names files: without a folder.
   const auto here = std::filesystem::current_path();
   std::filesystem::current_path(scratch.folder());
@@ -51,21 +45,21 @@ TEST(Gltf, BufferBesideTheFile) {
 }
 
 TEST(Gltf, OnlyFilesBelowTheFoldersAreOpened) {
-  const ScratchFolder scratch;
+  const TempFolder scratch;
   const GltfBuilder file = gltf_square();
-  std::filesystem::create_directory(scratch.file("in"));
-  write_bytes(scratch.file("a.bin"), file.binary());
-  std::filesystem::create_symlink(scratch.file("a.bin"), scratch.file("in/link.bin"));
-  std::filesystem::create_directory(scratch.file("in/folder.bin"));
-  const std::string absolute = scratch.file("a.bin").string();
+  std::filesystem::create_directory(scratch / "in");
+  write_bytes(scratch / "a.bin", file.binary());
+  std::filesystem::create_symlink(scratch / "a.bin", scratch / "in/link.bin");
+  std::filesystem::create_directory(scratch / "in/folder.bin");
+  const std::string absolute = (scratch / "a.bin").string();
   for (const std::string& uri :
        {std::string("../a.bin"), std::string("%2e%2e/a.bin"), std::string("x/../../a.bin"), absolute,
         "file://" + absolute, std::string("http://example.org/a.bin"), std::string("..\\a.bin"), std::string("C:a.bin"),
         std::string("link.bin"), std::string("folder.bin"), std::string("none.bin"), std::string("a%00.bin"),
         std::string("")}) {
-    write_bytes(scratch.file("in/a.gltf"), uri.empty() ? file.gltf("%") : file.gltf(uri));
+    write_bytes(scratch / "in/a.gltf", uri.empty() ? file.gltf("%") : file.gltf(uri));
     try {
-      (void)mesh_file::read_mesh(scratch.file("in/a.gltf"));
+      (void)mesh_file::read_mesh(scratch / "in/a.gltf");
       ADD_FAILURE() << uri << " was opened";
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), Errc::invalid_argument) << uri;
@@ -106,7 +100,7 @@ TEST(Gltf, ModesBecomeTriangles) {
       file.add_mesh({{"attributes", {{"POSITION", file.add(five, kFloat, "VEC3")}}}, {"mode", mode}});
       Json& primitive = file.json["meshes"][0]["primitives"][0];
       if (indexed) primitive["indices"] = file.add<std::uint8_t>({0, 1, 2, 3, 4}, kUbyte, "SCALAR");
-      const auto mesh = read(file);
+      const auto mesh = read_glb(file);
       EXPECT_EQ(mesh.positions.size(), 5U) << mode;
       EXPECT_EQ(mesh.corners, corners) << mode;
       EXPECT_EQ(dropped(mesh, "corners that make no whole triangle"), mode == 4 ? 2U : 0U);
@@ -119,7 +113,7 @@ TEST(Gltf, ModesBecomeTriangles) {
 TEST(Gltf, IndicesOfAllTypes) {
   const auto expect = [](GltfBuilder file, std::size_t indices) {
     file.json["meshes"][0]["primitives"][0]["indices"] = indices;
-    EXPECT_EQ(read(file).corners, (Corners{3, 2, 1}));
+    EXPECT_EQ(read_glb(file).corners, (Corners{3, 2, 1}));
   };
   GltfBuilder file = gltf_square();
   expect(file, file.add<std::uint8_t>({3, 2, 1}, kUbyte, "SCALAR"));
@@ -133,7 +127,7 @@ TEST(Gltf, PositionsOfAllTypes) {
   const auto positions = [](auto add) {
     GltfBuilder file = gltf_square();
     file.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = add(file);
-    return read(file).positions;
+    return read_glb(file).positions;
   };
   EXPECT_EQ(positions([](GltfBuilder& f) {
               return f.accessor(f.view<std::int16_t>({1, -2, 3, 0, -32768, 32767, 7, 0, 4, 5, 6, 0, 7, 8, 9, 0}, 8),
@@ -165,11 +159,11 @@ TEST(Gltf, SparseAndMissingData) {
   file.json["accessors"][0]["sparse"] = {{"count", 2},
                                          {"indices", {{"bufferView", indices}, {"componentType", kUshort}}},
                                          {"values", {{"bufferView", values}}}};
-  EXPECT_EQ(read(file).positions, (std::vector<Point>{{0, 0, 0}, {-1, -2, -3}, {1, 1, 0}, {7, 8, 9}}));
+  EXPECT_EQ(read_glb(file).positions, (std::vector<Point>{{0, 0, 0}, {-1, -2, -3}, {1, 1, 0}, {7, 8, 9}}));
   file.json["accessors"][0].erase("bufferView");
-  EXPECT_EQ(read(file).positions, (std::vector<Point>{{0, 0, 0}, {-1, -2, -3}, {0, 0, 0}, {7, 8, 9}}));
+  EXPECT_EQ(read_glb(file).positions, (std::vector<Point>{{0, 0, 0}, {-1, -2, -3}, {0, 0, 0}, {7, 8, 9}}));
   file.json["accessors"][0].erase("sparse");
-  EXPECT_EQ(read(file).positions, std::vector<Point>(4));
+  EXPECT_EQ(read_glb(file).positions, std::vector<Point>(4));
 }
 
 TEST(Gltf, PrimitivesShareVerticesWhereTheyCan) {
@@ -181,7 +175,7 @@ TEST(Gltf, PrimitivesShareVerticesWhereTheyCan) {
   primitives.push_back({{"attributes", {{"POSITION", 0}, {"NORMAL", normals}}}, {"indices", 1}});
   primitives.push_back({{"attributes", {{"POSITION", 0}, {"TEXCOORD_0", texture}}}, {"indices", 1}, {"mode", 0}});
   primitives.push_back({{"attributes", {{"POSITION", 0}, {"NORMAL", other}}}, {"indices", 1}});
-  const auto mesh = read(file);
+  const auto mesh = read_glb(file);
   EXPECT_EQ(mesh.positions.size(), 8U);
   EXPECT_EQ(mesh.corners, (Corners{0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}));
   EXPECT_EQ(dropped(mesh, "points (their vertices are kept)"), 6U);
@@ -198,7 +192,7 @@ TEST(Gltf, InstancesHaveVerticesOfTheirOwn) {
   // Another mesh of the same vertices in the same place is part of the same surface.
   file.json["meshes"].push_back({{"primitives", {{{"attributes", {{"POSITION", 0}}}}}}});
   file.json["nodes"].push_back({{"mesh", 1}});
-  const auto mesh = read(file);
+  const auto mesh = read_glb(file);
   EXPECT_EQ(mesh.positions.size(), 12U);
   EXPECT_EQ(mesh.positions[5], (Point{1, 0, 5}));
   EXPECT_EQ(mesh.positions[9], (Point{1, 0, 0}));
@@ -211,7 +205,7 @@ TEST(Gltf, TransformsOfParentsAndChildren) {
   file.json["nodes"][0]["rotation"] = {0, 0, std::sqrt(0.5), std::sqrt(0.5)};  // x becomes y
   file.json["nodes"][0]["scale"] = {2, 3, 4};
   file.json["nodes"].push_back({{"children", {0}}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2, 0, 100, 0, 0, 1}}});
-  const auto mesh = read(file);
+  const auto mesh = read_glb(file);
   const Point expected[] = {{101, 2, 6}, {101, 4, 6}, {98, 4, 6}, {98, 2, 8}};
   for (std::size_t v = 0; v < 4; ++v)
     for (int a = 0; a < 3; ++a) EXPECT_NEAR(mesh.positions[v][a], expected[v][a], 1e-12) << v;
@@ -222,7 +216,7 @@ TEST(Gltf, TransformsOfParentsAndChildren) {
 TEST(Gltf, TranslationsRoundOnce) {
   GltfBuilder file = gltf_square();
   file.json["nodes"][0]["translation"] = {0.1, 0, -0.3};
-  const auto mesh = read(file);
+  const auto mesh = read_glb(file);
   EXPECT_EQ(mesh.positions[2], (Point{1 + 0.1, 1, -0.3}));
   EXPECT_EQ(mesh.positions[3], (Point{0.1, 1, 0.25 - 0.3}));
 }
@@ -230,7 +224,7 @@ TEST(Gltf, TranslationsRoundOnce) {
 TEST(Gltf, MirroredFacesAreTurned) {
   GltfBuilder file = gltf_square();
   file.json["nodes"][0]["scale"] = {-1, 1, 1};
-  const auto mesh = read(file);
+  const auto mesh = read_glb(file);
   EXPECT_EQ(mesh.positions[1], (Point{-1, 0, 0}));
   EXPECT_EQ(mesh.corners, (Corners{0, 2, 1, 0, 3, 2}));
 }
@@ -239,7 +233,7 @@ TEST(Gltf, SkinnedMeshesStayAsTheyWereMade) {
   GltfBuilder file = gltf_square();
   file.json["nodes"][0].update({{"scale", {9, 9, 9}}, {"skin", 0}});
   file.json["skins"] = {{{"joints", {0}}}};
-  const auto mesh = read(file);
+  const auto mesh = read_glb(file);
   EXPECT_EQ(mesh.positions[1], (Point{1, 0, 0}));
   EXPECT_EQ(dropped(mesh, "skins"), 1U);
 }
@@ -248,26 +242,26 @@ TEST(Gltf, ScenesSayWhichNodes) {
   GltfBuilder file = gltf_square();
   file.json["nodes"].push_back({{"mesh", 0}, {"name", "left"}, {"translation", {5, 0, 0}}});
   file.json["scenes"] = {{{"nodes", {1}}}, {{"nodes", {0}}}};
-  EXPECT_EQ(read(file).positions.size(), 8U) << "no default scene";
-  EXPECT_EQ(dropped(read(file), "which nodes a scene has"), 2U);
+  EXPECT_EQ(read_glb(file).positions.size(), 8U) << "no default scene";
+  EXPECT_EQ(dropped(read_glb(file), "which nodes a scene has"), 2U);
   file.json["scene"] = 1;
-  const auto one = read(file);
+  const auto one = read_glb(file);
   EXPECT_EQ(one.positions.size(), 4U);
   EXPECT_EQ(dropped(one, "node 'left' outside the scene"), 1U);
   file.json["scenes"].erase(1);
   file.json.erase("scene");
-  EXPECT_EQ(read(file).positions[1], (Point{6, 0, 0})) << "the only scene";
+  EXPECT_EQ(read_glb(file).positions[1], (Point{6, 0, 0})) << "the only scene";
 }
 
 TEST(Gltf, DeepTreesAreNoProblem) {
   GltfBuilder file = gltf_square();
   constexpr std::size_t kDeep = 100'000;
   for (std::size_t i = 1; i < kDeep; ++i) file.json["nodes"].push_back({{"children", {i - 1}}});
-  EXPECT_EQ(read(file).face_count(), 2U);
+  EXPECT_EQ(read_glb(file).face_count(), 2U);
 }
 
 TEST(Gltf, WhatIsNotKeptIsNamed) {
-  const auto mesh = read(gltf_sample());
+  const auto mesh = read_glb(gltf_sample());
   EXPECT_EQ(mesh.references, (std::vector<std::string>{"texture skin%20a.png"}));
   EXPECT_EQ(dropped(mesh, "bytes of embedded image 'inside'"), 48U);
   EXPECT_EQ(dropped(mesh, "materials that no face has"), 1U);
@@ -282,7 +276,7 @@ TEST(Gltf, WhatIsNotKeptIsNamed) {
   json["nodes"][0]["weights"] = {0, 1};
   json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}, {{"POSITION", 0}}};
   json["meshes"].push_back({{"name", "none"}, {"primitives", Json::array()}});
-  const auto more = read(file);
+  const auto more = read_glb(file);
   for (const char* what : {"animations", "cameras", "samplers", "textures", "asset 'generator'", "asset 'copyright'",
                            "extension 'KHR_lights_punctual'", "extension 'X'", "meshes that no node of the scene has"})
     EXPECT_EQ(dropped(more, what), 1U) << what;
@@ -302,7 +296,7 @@ TEST(Gltf, ChunksAndBytesBeyondAreNamed) {
 TEST(Gltf, HarmlessExtensionsMayBeRequired) {
   GltfBuilder file = gltf_square();
   file.json["extensionsRequired"] = {"KHR_mesh_quantization", "KHR_materials_unlit", "KHR_texture_transform"};
-  EXPECT_EQ(read(file).face_count(), 2U);
+  EXPECT_EQ(read_glb(file).face_count(), 2U);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "tests/api/mesh_file/files.h"
 
@@ -16,8 +15,6 @@ using mesh_file::Scalar;
 using Names = std::vector<std::string>;
 using Values = std::vector<double>;
 
-const double kNan = std::numeric_limits<double>::quiet_NaN();
-const std::string kFour = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 const std::string kTextures = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
 
 MeshData there_and_back(const MeshData& mesh) {
@@ -131,10 +128,9 @@ TEST(ObjAttributes, PolygonsWithEverything) {
 
 TEST(ObjAttributes, LinesAreInOrderOfFirstUse) {
   MeshData mesh = read_text("a.obj", kFour + kTextures + "f 1/4 2/1 3/3\nf 1/1 3/2 4/4\n");
-  const ScratchFolder scratch;
-  (void)mesh_file::write_mesh(scratch.file("a.obj"), mesh_file::Format::obj, output_of(mesh, Scalar::float32));
-  EXPECT_EQ(read_bytes(scratch.file("a.obj")),
-            kFour + "vt 0 1\nvt 0 0\nvt 1 1\nvt 1 0\nf 1/1 2/2 3/3\nf 1/2 3/4 4/1\n");
+  const TempFolder scratch;
+  (void)mesh_file::write_mesh(scratch / "a.obj", mesh_file::Format::obj, output_of(mesh, Scalar::float32));
+  EXPECT_EQ(read_bytes(scratch / "a.obj"), kFour + "vt 0 1\nvt 0 0\nvt 1 1\nvt 1 0\nf 1/1 2/2 3/3\nf 1/2 3/4 4/1\n");
 }
 
 TEST(ObjAttributes, IntegerColoursAreWrittenFromZeroToOne) {

@@ -15,8 +15,6 @@ namespace {
 using Indices = std::vector<std::uint32_t>;
 using testing::HasSubstr;
 
-const std::string kFour = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-
 TEST(Obj, FormsOfCorners) {
   for (const char* face : {"f 1 2 3", "f 1/1 2/1 3/1", "f 1//1 2//2 3//3", "f 1/1/1 2/2/2 3/3/3", "f -4 -3 -2",
                            "f -4/-1/-1 -3/-1/-1 -2//-1", "f\t1\t2\t3\t", "  f 1 2 3  ", "f +1 2 3", "f 1/ 2/ 3/",

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "tests/api/mesh_file/files.h"
 
@@ -14,8 +13,6 @@ namespace {
 using mesh_file::MeshData;
 using mesh_file::Scalar;
 using Values = std::vector<double>;
-
-const double kNan = std::numeric_limits<double>::quiet_NaN();
 
 Attribute color(AttributeOf of, NumberType type, std::uint8_t components, Values values) {
   return attribute("color", of, type, components, Meaning::color, std::move(values));
@@ -36,8 +33,8 @@ MeshData read(std::string_view word, const std::string (&vertices)[3], std::stri
 /// The mesh comes back, under this first word.
 void expect_back(const MeshData& mesh, std::string_view word) {
   EXPECT_TRUE(mesh.dropped.empty());
-  const ScratchFolder scratch;
-  const auto file = scratch.file("a.off");
+  const TempFolder scratch;
+  const auto file = scratch / "a.off";
   EXPECT_TRUE(mesh_file::write_mesh(file, mesh_file::Format::off, output_of(mesh, Scalar::float64)).empty());
   const std::string text = read_bytes(file);
   EXPECT_EQ(text.substr(0, text.find('\n')), word);

@@ -16,7 +16,6 @@ namespace ramcdb::test {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::uintmax_t kLargestFile = 30'000'000;  // the test stays below a minute
 
 using PlainFace = std::vector<std::array<float, 3>>;
 
@@ -100,18 +99,18 @@ bool has_coloured_faces(const mesh_file::MeshData& mesh) {
 TEST(OtherReader, OpenMeshFindsTheSameInThemAndInOurs) {
   const auto folder = meshes_folder();
   if (!folder) GTEST_SKIP() << "real meshes: set RAMCDB_MESHES";
-  const ScratchFolder scratch;
+  const TempFolder scratch;
   std::size_t same = 0;
   for (const auto& entry : fs::recursive_directory_iterator(*folder)) {
     const fs::path& file = entry.path();
-    if (!entry.is_regular_file() || !openmesh_knows(file) || entry.file_size() > kLargestFile) continue;
+    if (!entry.is_regular_file() || !openmesh_knows(file) || entry.file_size() > kLargestRealFile) continue;
     SCOPED_TRACE(file.filename());
     const mesh_file::MeshData ours = mesh_file::read_mesh(file);
     if (mesh_file::format_of(file) == mesh_file::Format::off && has_coloured_faces(ours)) {
       fmt::print("skipped: OpenMesh does not read coloured faces of {}\n", file.string());
       continue;
     }
-    const auto written = scratch.file("again" + file.extension().string());
+    const auto written = scratch / ("again" + file.extension().string());
     mesh_file::write_mesh(written, mesh_file::format_of(file), output_of(ours, mesh_file::Scalar::float32));
     const auto our_faces =
         faces_of(mesh_file::format_of(file) == mesh_file::Format::obj ? without_repeats(ours) : ours);

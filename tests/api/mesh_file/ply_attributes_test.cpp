@@ -16,8 +16,6 @@ using mesh_file::MeshData;
 using mesh_file::Scalar;
 using testing::HasSubstr;
 
-const double kNan = std::numeric_limits<double>::quiet_NaN();
-
 constexpr NumberType kTypes[] = {NumberType::int8,  NumberType::uint8,  NumberType::int16,   NumberType::uint16,
                                  NumberType::int32, NumberType::uint32, NumberType::float32, NumberType::float64};
 

@@ -16,7 +16,6 @@ namespace ramcdb::test {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::uintmax_t kLargestFile = 30'000'000;  // the test stays below a minute
 
 /// A facet of four vertices, on purpose; the table counts what a lenient reader makes of it.
 constexpr std::string_view kRefused = "tiny/toomanyvertices.stl";
@@ -82,9 +81,9 @@ bool are_floats(const std::vector<Point>& positions) {
 }
 
 /// glTF has 32-bit floats: what nodes have turned is rounded, the rest comes back.
-void expect_same_glb(const mesh_file::MeshData& mesh, const ScratchFolder& scratch, const std::string& name) {
+void expect_same_glb(const mesh_file::MeshData& mesh, const TempFolder& scratch, const std::string& name) {
   SCOPED_TRACE(name);
-  const auto file = scratch.file("again.glb");
+  const auto file = scratch / "again.glb";
   EXPECT_TRUE(mesh_file::write_mesh(file, mesh_file::Format::glb, output_of(mesh, mesh_file::Scalar::float32)).empty());
   const auto again = mesh_file::read_mesh(file);
   auto rounded = mesh.positions;
@@ -96,9 +95,9 @@ void expect_same_glb(const mesh_file::MeshData& mesh, const ScratchFolder& scrat
 }
 
 /// What comes back from a file of the same format that we wrote ourselves.
-void expect_same_again(const mesh_file::MeshData& mesh, const ScratchFolder& scratch, const std::string& name) {
+void expect_same_again(const mesh_file::MeshData& mesh, const TempFolder& scratch, const std::string& name) {
   for (const bool ascii : {false, true}) {
-    const auto file = scratch.file("again" + fs::path(name).extension().string());
+    const auto file = scratch / ("again" + fs::path(name).extension().string());
     // Binary floats stay floats; a float32's text is another double.
     const bool binary = !ascii && mesh_file::format_of(file) == mesh_file::Format::ply;
     const auto scalar = binary && are_floats(mesh.positions) ? mesh_file::Scalar::float32 : mesh_file::Scalar::float64;
@@ -120,11 +119,11 @@ TEST(RealMeshes, CountsAreThoseOfTheTable) {
   if (!folder || !fs::exists(*folder / "MESHES.md"))
     GTEST_SKIP() << "real meshes: set RAMCDB_MESHES to a folder with MESHES.md";
   const auto expected = counts_by_file(*folder / "MESHES.md");
-  const ScratchFolder scratch;
+  const TempFolder scratch;
   std::size_t read = 0;
   for (const auto& [name, counts] : expected) {
     const fs::path file = *folder / name;
-    if (!is_read(file) || !fs::exists(file) || fs::file_size(file) > kLargestFile) {
+    if (!is_read(file) || !fs::exists(file) || fs::file_size(file) > kLargestRealFile) {
       fmt::print("skipped {}: {}\n", name, is_read(file) ? "missing or too large" : "another format");
       continue;
     }

@@ -204,8 +204,8 @@ TEST(RoundTripLocale, DecimalCommaDoesNotMatter) {
 }
 
 TEST(Writer, RefusesCoordinatesThatTheFileCannotHold) {
-  const ScratchFolder scratch;
-  const auto file = scratch.file("large.stl");
+  const TempFolder scratch;
+  const auto file = scratch / "large.stl";
   write_bytes(file, "what was there");
   const std::vector<Triangle> faces{{0, 1, 2}};
   for (const double wrong : {1e39, -1e300, std::nan(""), HUGE_VAL}) {
@@ -217,7 +217,7 @@ TEST(Writer, RefusesCoordinatesThatTheFileCannotHold) {
 }
 
 TEST(Writer, RefusesFacesAndAttributesThatAreNone) {
-  const ScratchFolder scratch;
+  const TempFolder scratch;
   const MeshData good = polygon_grid(2);
   const std::size_t v = good.positions.size(), c = good.corners.size();
   const auto with = [&](Attribute attribute) {
@@ -257,27 +257,27 @@ TEST(Writer, RefusesFacesAndAttributesThatAreNone) {
   wrong[15].face_sizes[1] = 5;
   for (std::size_t i = 0; i < wrong.size(); ++i)
     for (const Format format : {Format::ply, Format::obj, Format::off, Format::stl})
-      EXPECT_THROW(mesh_file::write_mesh(scratch.file("a"), format, output_of(wrong[i], Scalar::float64)), Error) << i;
-  EXPECT_FALSE(std::filesystem::exists(scratch.file("a")));
+      EXPECT_THROW(mesh_file::write_mesh(scratch / "a", format, output_of(wrong[i], Scalar::float64)), Error) << i;
+  EXPECT_FALSE(std::filesystem::exists(scratch / "a"));
 }
 
 TEST(Writer, LeavesNothingBehindWhereItCannotWrite) {
-  const ScratchFolder scratch;
+  const TempFolder scratch;
   const TestMesh mesh = boxes(1);
-  EXPECT_THROW(mesh_file::write_mesh(scratch.file("none") / "a.ply", Format::ply,
+  EXPECT_THROW(mesh_file::write_mesh((scratch / "none") / "a.ply", Format::ply,
                                      output_of(mesh.positions, mesh.faces, Scalar::float32)),
                Error);
-  std::filesystem::create_directory(scratch.file("a.ply"));
+  std::filesystem::create_directory(scratch / "a.ply");
   EXPECT_THROW(
-      mesh_file::write_mesh(scratch.file("a.ply"), Format::ply, output_of(mesh.positions, mesh.faces, Scalar::float32)),
+      mesh_file::write_mesh(scratch / "a.ply", Format::ply, output_of(mesh.positions, mesh.faces, Scalar::float32)),
       Error);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch.folder()), {}), 1);
 }
 
 TEST(Writer, ReplacesTheFileAndLeavesNoOther) {
-  const ScratchFolder scratch;
+  const TempFolder scratch;
   const TestMesh mesh = boxes(1);
-  const auto file = scratch.file("a.ply");
+  const auto file = scratch / "a.ply";
   write_bytes(file, "older");
   mesh_file::write_mesh(file, Format::ply, output_of(mesh.positions, mesh.faces, Scalar::float32));
   EXPECT_EQ(mesh_file::read_mesh(file).face_count(), mesh.faces.size());
