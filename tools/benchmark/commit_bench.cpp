@@ -5,8 +5,6 @@
 // and in whole as two processes of PROGRAM. Medians as Markdown on standard output, and as multiples of the first mesh.
 
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
 
 #include <CLI/CLI.hpp>
 #include <array>
@@ -18,6 +16,7 @@
 #include "ramcdb/error.h"
 #include "ramcdb/repository.h"
 #include "tools/benchmark/file_edits.h"
+#include "tools/benchmark/program.h"
 #include "tools/benchmark/scratch_folder.h"
 #include "tools/benchmark/timing.h"
 
@@ -34,20 +33,6 @@ struct Samples {
   std::vector<double> checkout, commit, processes, bytes_read, bytes_written, charts;
   std::array<std::vector<double>, kCommitStages.size()> stages;
 };
-
-/// CPU seconds of a program with its arguments. Throws unless it succeeds.
-double cpu_of(std::vector<std::string> command) {
-  std::vector<char*> arguments;
-  for (std::string& word : command) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  const double before = cpu_seconds(RUSAGE_CHILDREN);
-  pid_t child = 0;
-  int status = 0;
-  if (posix_spawn(&child, arguments[0], nullptr, nullptr, arguments.data(), environ) != 0 ||
-      waitpid(child, &status, 0) != child || status != 0)
-    throw Error(Errc::invalid_argument, "the program failed", command.front() + " " + command[1]);
-  return cpu_seconds(RUSAGE_CHILDREN) - before;
-}
 
 class MeshBench {
  public:
@@ -104,11 +89,12 @@ class MeshBench {
   }
 
   void measure_processes(FileEdit edit, ChartId chart, Samples& samples) {
-    const double out = cpu_of({program_, "checkout", folder_, "--charts", std::to_string(chart.value), "-o", file_,
-                               "--force", "--quiet", "-j", "1"});
+    const double out = run_program({program_, "checkout", folder_, "--charts", std::to_string(chart.value), "-o", file_,
+                                    "--force", "--quiet", "-j", "1"})
+                           .cpu_seconds;
     edit_file(file_, edit);
-    samples.processes.push_back(1000 *
-                                (out + cpu_of({program_, "commit", file_, "-m", "benchmark", "--quiet", "-j", "1"})));
+    samples.processes.push_back(
+        1000 * (out + run_program({program_, "commit", file_, "-m", "benchmark", "--quiet", "-j", "1"}).cpu_seconds));
   }
 
   fs::path folder_, file_;
@@ -175,11 +161,4 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace ramcdb::benchmark
 
-int main(int argc, char** argv) {
-  try {
-    return ramcdb::benchmark::run(argc, argv);
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "{}\n", e.what());
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return ramcdb::benchmark::run_guarded(ramcdb::benchmark::run, argc, argv); }

@@ -13,6 +13,7 @@
 
 #include "api/chart_loader.h"
 #include "ramcdb/built_in_edits.h"
+#include "tools/benchmark/program.h"
 #include "tools/benchmark/scratch_folder.h"
 
 namespace ramcdb::benchmark {
@@ -102,11 +103,4 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace ramcdb::benchmark
 
-int main(int argc, char** argv) {
-  try {
-    return ramcdb::benchmark::run(argc, argv);
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "{}\n", e.what());
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return ramcdb::benchmark::run_guarded(ramcdb::benchmark::run, argc, argv); }
