@@ -82,7 +82,7 @@ ImportReport import_in_core(db::Store& store, const std::filesystem::path& file,
   record.polygons = report.polygons = cut.polygons;
   report.polygons_as_fans = cut.fans;
   chartify::CanonicalMesh canonical =
-      chartify::canonical_order({std::move(points), mesh_file::triangles_of(data, cut)});
+      chartify::canonical_order({std::move(points), mesh_file::triangles_of(data, cut)}, options.threads);
   const LayerSource layers(data, cut, canonical, record, exact, options.lossless || options.lossless_attributes);
   canonical.mesh.polygon_of_face = layers.polygon_of_face();
   record.vertices = canonical.mesh.positions.size();

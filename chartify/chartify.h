@@ -33,8 +33,8 @@ struct CanonicalMesh {
 /// Puts faces along a Hilbert curve and turns each to its smallest corner first, vertices in the order of their first
 /// face, isolated ones last. The result depends on the geometry only, not on the order or rotation of the input's faces
 /// nor on its vertex order (ties between faces with equal positions are broken by their neighbours' positions, and only
-/// then by input order).
-[[nodiscard]] CanonicalMesh canonical_order(const IndexedMesh& mesh);
+/// then by input order), nor on the number of threads.
+[[nodiscard]] CanonicalMesh canonical_order(const IndexedMesh& mesh, unsigned threads = 1);
 
 enum class Method {
   refined,  ///< growth, Lloyd, rebalancing, face moves and wire straightening (the default)
