@@ -26,10 +26,11 @@ void refine(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const N
   FaceMover mover(twins, limits, partition);
   rebalance(mover, limits, static_cast<std::uint32_t>(partition.sizes.size()));
   split_oversized(mesh, neighbours, limits, partition);
+  const BorderStraightener straightener(mesh, twins);
   for (int i = 0; i < kRefinements; ++i) {
     progress(static_cast<double>(i) / kRefinements);
     move_faces(mover);
-    straighten_borders(mesh, twins, limits, partition);
+    straightener.run(limits, partition);
   }
   merge_pieces(neighbours, partition);
 }
@@ -39,8 +40,9 @@ Partition refined_charts(const IndexedMesh& mesh, const std::vector<HalfEdge>& t
   const auto progress = [&](double done) {
     if (options.progress) options.progress(done);
   };
-  Partition partition =
-      grow_charts(mesh, neighbours, components, kLloydIterations, [&](double done) { progress(kGrowthShare * done); });
+  Partition partition = grow_charts(
+      mesh, neighbours, components, kLloydIterations, [&](double done) { progress(kGrowthShare * done); },
+      options.threads);
   refine(
       mesh, twins, neighbours, [&](double done) { progress(kGrowthShare + (1 - kGrowthShare) * done); },
       SizeLimits(options.target_faces), partition);

@@ -5,8 +5,6 @@
 #include <queue>
 #include <utility>
 
-#include "chartify/border_paths.h"
-
 namespace ramcdb::chartify {
 namespace {
 
@@ -14,30 +12,24 @@ constexpr std::uint32_t kBandWidth = 8;     // edges on either side of a border
 constexpr std::uint32_t kCostPerEdge = 64;  // plus as much for an edge of mean length
 
 double edge_length(const IndexedMesh& mesh, std::uint32_t u, std::uint32_t v) {
-  double sum = 0;
-  for (int a = 0; a < 3; ++a) {
-    const double d = static_cast<double>(mesh.positions[u][a]) - static_cast<double>(mesh.positions[v][a]);
-    sum += d * d;
-  }
-  return std::sqrt(sum);
+  const LatticePoint p = mesh.positions[u], q = mesh.positions[v];
+  const auto square = [](double d) { return d * d; };
+  return std::sqrt(square(p.x - q.x) + square(p.y - q.y) + square(p.z - q.z));
 }
 
 class Straightener {
  public:
-  Straightener(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const SizeLimits& limits,
-               Partition& partition, const MoveRules* rules)
+  Straightener(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const ClosedFans& fans, double mean_length,
+               const SizeLimits& limits, Partition& partition, const MoveRules* rules)
       : mesh_(mesh),
         twins_(twins),
+        fans_(fans),
+        mean_length_(mean_length),
         limits_(limits),
         partition_(partition),
         rules_(rules),
-        fans_(mesh, twins),
         vertex_(mesh.positions.size()),
-        on_path_(twins.size(), 0) {
-    double sum = 0;
-    for (HalfEdge h = 0; h < twins_.size(); ++h) sum += edge_length(mesh_, start_of(h), end_of(h));
-    mean_length_ = twins_.empty() ? 1 : sum / static_cast<double>(twins_.size());
-  }
+        on_path_(twins.size(), 0) {}
 
   void run() {
     for (const BorderPath& path : trace_borders(mesh_, twins_, fans_, partition_.chart_of_face)) straighten(path);
@@ -241,11 +233,11 @@ class Straightener {
 
   const IndexedMesh& mesh_;
   const std::vector<HalfEdge>& twins_;
+  const ClosedFans& fans_;
+  double mean_length_;
   const SizeLimits& limits_;
   Partition& partition_;
   const MoveRules* rules_;
-  ClosedFans fans_;
-  double mean_length_ = 1;
   std::uint32_t number_ = 0, left_ = 0, right_ = 0, begin_ = 0, end_ = 0;
   std::vector<VertexState> vertex_;
   std::vector<std::uint32_t> on_path_;  ///< number of the border whose new path runs along the half-edge
@@ -257,9 +249,17 @@ class Straightener {
 
 }  // namespace
 
-void straighten_borders(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const SizeLimits& limits,
-                        Partition& partition, const MoveRules* rules) {
-  Straightener(mesh, twins, limits, partition, rules).run();
+BorderStraightener::BorderStraightener(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins)
+    : mesh_(mesh), twins_(twins), fans_(mesh, twins) {
+  if (twins.empty()) return;
+  double sum = 0;
+  for (const Triangle& t : mesh.faces)
+    for (std::size_t i = 0; i < 3; ++i) sum += edge_length(mesh, t[i], t[i == 2 ? 0 : i + 1]);
+  mean_length_ = sum / static_cast<double>(twins.size());
+}
+
+void BorderStraightener::run(const SizeLimits& limits, Partition& partition, const MoveRules* rules) const {
+  Straightener(mesh_, twins_, fans_, mean_length_, limits, partition, rules).run();
 }
 
 }  // namespace ramcdb::chartify
