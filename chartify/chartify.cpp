@@ -86,9 +86,9 @@ void keep_apart(const IndexedMesh& mesh, const Regions& components, std::span<co
   }
 }
 
-Charts cut(const IndexedMesh& mesh, std::span<const std::uint32_t> later, const Options& options) {
+Charts cut(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, std::span<const std::uint32_t> later,
+           const Options& options) {
   require_target(options);
-  const std::vector<HalfEdge> twins = find_twins(mesh, group_half_edges(mesh));
   const Neighbours neighbours = find_neighbours(twins);
   const Regions components = find_components(neighbours, options.target_faces);
   Partition partition = options.method == Method::paper ? paper_charts(mesh, twins, neighbours, components, options)
@@ -99,12 +99,18 @@ Charts cut(const IndexedMesh& mesh, std::span<const std::uint32_t> later, const 
 
 }  // namespace
 
-Charts chartify(const IndexedMesh& mesh, const Options& options) { return cut(mesh, {}, options); }
+Charts chartify(const IndexedMesh& mesh, const Options& options) {
+  return cut(mesh, find_twins(mesh, group_half_edges(mesh)), {}, options);
+}
+
+Charts chartify(const IndexedMesh& mesh, const Adjacency& adjacency, const Options& options) {
+  return cut(mesh, adjacency.twins, {}, options);
+}
 
 BlockCharts cut_block(const IndexedMesh& mesh, std::span<const std::uint32_t> later, const Options& options) {
   if (later.size() != mesh.positions.size())
     throw Error(Errc::invalid_argument, "a block of another number of vertices", "chartify");
-  BlockCharts out{cut(mesh, later, options), {}};
+  BlockCharts out{cut(mesh, find_twins(mesh, group_half_edges(mesh)), later, options), {}};
   out.waits_for.assign(out.charts.chart_count, kNone);
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
     for (const std::uint32_t v : mesh.faces[f]) {

@@ -61,6 +61,9 @@ struct Charts {
 };
 /// Errors: invalid_argument for a target out of range.
 [[nodiscard]] Charts chartify(const IndexedMesh& mesh, const Options& options);
+struct Adjacency;
+/// Where the mesh's adjacency is known (half_edge_twins.h).
+[[nodiscard]] Charts chartify(const IndexedMesh& mesh, const Adjacency& adjacency, const Options& options);
 
 /// Likewise, from a first cut by somebody else: only the later stages of Method::refined. Components of less than half
 /// the target are packed as chartify() packs them, whatever the cut says of them.

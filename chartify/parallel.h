@@ -52,4 +52,24 @@ inline void parallel_ranges(std::size_t count, unsigned threads,
                [&](std::size_t i) { work(i * kRange, std::min(count, (i + 1) * kRange)); });
 }
 
+/// Calls both, `aside` on a thread of its own if there may be two. The first exception of either is thrown.
+inline void run_beside(unsigned threads, const std::function<void()>& aside, const std::function<void()>& here) {
+  if (threads < 2) {
+    aside();
+    return here();
+  }
+  std::exception_ptr failure;
+  {
+    const std::jthread helper([&] {
+      try {
+        aside();
+      } catch (...) {
+        failure = std::current_exception();
+      }
+    });
+    here();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
 }  // namespace ramcdb
