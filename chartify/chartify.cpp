@@ -22,7 +22,7 @@ constexpr double kGrowthShare = 0.5;  // of the time, for the progress
 
 /// The default recipe (chartify/RECIPE.md), behind its first stage.
 void refine(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const Neighbours& neighbours,
-            const Progress& progress, const SizeLimits& limits, Partition& partition) {
+            const Progress& progress, const SizeLimits& limits, unsigned threads, Partition& partition) {
   FaceMover mover(twins, limits, partition);
   rebalance(mover, limits, static_cast<std::uint32_t>(partition.sizes.size()));
   split_oversized(mesh, neighbours, limits, partition);
@@ -30,7 +30,7 @@ void refine(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const N
   for (int i = 0; i < kRefinements; ++i) {
     progress(static_cast<double>(i) / kRefinements);
     move_faces(mover);
-    straightener.run(limits, partition);
+    straightener.run(limits, partition, nullptr, threads);
   }
   merge_pieces(neighbours, partition);
 }
@@ -45,7 +45,7 @@ Partition refined_charts(const IndexedMesh& mesh, const std::vector<HalfEdge>& t
       options.threads);
   refine(
       mesh, twins, neighbours, [&](double done) { progress(kGrowthShare + (1 - kGrowthShare) * done); },
-      SizeLimits(options.target_faces), partition);
+      SizeLimits(options.target_faces), options.threads, partition);
   return partition;
 }
 
@@ -144,7 +144,7 @@ Charts refine_cut(const IndexedMesh& mesh, std::vector<std::uint32_t> chart_of_f
   const auto progress = [&](double done) {
     if (options.progress) options.progress(done);
   };
-  refine(mesh, twins, neighbours, progress, SizeLimits(options.target_faces), partition);
+  refine(mesh, twins, neighbours, progress, SizeLimits(options.target_faces), options.threads, partition);
   return charts_of(mesh, components, options, partition);
 }
 

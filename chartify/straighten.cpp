@@ -1,9 +1,13 @@
 #include "chartify/straighten.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <queue>
 #include <utility>
+
+#include "chartify/parallel.h"
+#include "chartify/vertex_table.h"
 
 namespace ramcdb::chartify {
 namespace {
@@ -17,6 +21,29 @@ double edge_length(const IndexedMesh& mesh, std::uint32_t u, std::uint32_t v) {
   return std::sqrt(square(p.x - q.x) + square(p.y - q.y) + square(p.z - q.z));
 }
 
+struct Border {
+  BorderPath path;
+  std::uint32_t left, right;
+};
+
+/// Borders of one turn have no chart in common, and each comes behind those before it that have one in common with it.
+/// So all that it sees is the same as if there were no turns.
+std::vector<std::vector<Border>> in_turns(std::vector<BorderPath> paths, const std::vector<HalfEdge>& twins,
+                                          const Partition& partition) {
+  std::vector<std::vector<Border>> turns;
+  std::vector<std::size_t> next_of_chart(partition.sizes.size(), 0);
+  for (BorderPath& path : paths) {
+    const std::uint32_t left = partition.chart_of_face[face_of(path.front())];
+    const std::uint32_t right = partition.chart_of_face[face_of(twins[path.front()])];
+    const std::size_t turn = std::max(next_of_chart[left], next_of_chart[right]);
+    next_of_chart[left] = next_of_chart[right] = turn + 1;
+    turns.resize(std::max(turns.size(), turn + 1));
+    turns[turn].push_back({std::move(path), left, right});
+  }
+  return turns;
+}
+
+/// Straightens one border after the other. Several may work at a time on borders without a common chart.
 class Straightener {
  public:
   Straightener(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const ClosedFans& fans, double mean_length,
@@ -27,26 +54,43 @@ class Straightener {
         mean_length_(mean_length),
         limits_(limits),
         partition_(partition),
-        rules_(rules),
-        vertex_(mesh.positions.size()),
-        on_path_(twins.size(), 0) {}
+        rules_(rules) {}
 
-  void run() {
-    for (const BorderPath& path : trace_borders(mesh_, twins_, fans_, partition_.chart_of_face)) straighten(path);
+  void straighten(const Border& border) {
+    const BorderPath& path = border.path;
+    left_ = border.left;
+    right_ = border.right;
+    begin_ = start_of(path.front());
+    end_ = end_of(path.back());
+    if (begin_ == end_) return;
+    // Straightening another border may have changed the sides of this one.
+    if (chart_left(path.front()) != left_ || chart_left(twins_[path.front()]) != right_) return;
+    if (std::ranges::none_of(path, [&](HalfEdge h) { return may_move(h) || may_move(twins_[h]); })) return;
+    vertices_.clear();
+    mark_band(path);
+    std::uint32_t cost = 0;
+    for (const HalfEdge h : path) cost += cost_of(h);
+    const BorderPath better = cheapest_path(path, cost);
+    if (!better.empty()) replace(better);
   }
 
  private:
   struct VertexState {
-    std::uint32_t band = 0;     ///< number of the border in whose band the vertex was last
-    std::uint32_t outside = 0;  ///< number of the border whose charts the vertex was last found not to be inside of
-    std::uint32_t reached = 0;  ///< number of the border for which `cost` and `arriving` hold
+    enum : std::uint8_t { unknown, in_band, outside } place = unknown;
+    bool reached = false;
     std::uint32_t cost = 0;
     HalfEdge arriving = kNoTwin;
   };
 
   [[nodiscard]] std::uint32_t start_of(HalfEdge h) const { return mesh_.faces[face_of(h)][h % 3]; }
   [[nodiscard]] std::uint32_t end_of(HalfEdge h) const { return start_of(next_in_face(h)); }
-  [[nodiscard]] std::uint32_t chart_left(HalfEdge h) const { return partition_.chart_of_face[face_of(h)]; }
+  /// Others may be changing faces of other charts meanwhile.
+  [[nodiscard]] std::atomic_ref<std::uint32_t> chart_of(std::uint32_t face) const {
+    return std::atomic_ref(partition_.chart_of_face[face]);
+  }
+  [[nodiscard]] std::uint32_t chart_left(HalfEdge h) const {
+    return chart_of(face_of(h)).load(std::memory_order_relaxed);
+  }
 
   [[nodiscard]] std::uint32_t cost_of(HalfEdge h) const {
     const double length = edge_length(mesh_, start_of(h), end_of(h));
@@ -60,26 +104,11 @@ class Straightener {
   /// Whether the face that a border half-edge is of may change sides.
   [[nodiscard]] bool may_move(HalfEdge h) const { return may_change(face_of(h), chart_left(twins_[h])); }
 
-  void straighten(const BorderPath& path) {
-    ++number_;
-    left_ = chart_left(path.front());
-    right_ = chart_left(twins_[path.front()]);
-    begin_ = start_of(path.front());
-    end_ = end_of(path.back());
-    if (begin_ == end_ || left_ == right_) return;  // straightening another border may have merged the two sides
-    if (std::ranges::none_of(path, [&](HalfEdge h) { return may_move(h) || may_move(twins_[h]); })) return;
-    mark_band(path);
-    std::uint32_t cost = 0;
-    for (const HalfEdge h : path) cost += cost_of(h);
-    const BorderPath better = cheapest_path(path, cost);
-    if (!better.empty()) replace(better);
-  }
-
   /// The vertices of the border and those around it inside the two charts.
   void mark_band(const BorderPath& path) {
     std::vector<std::uint32_t> ring, next;
     for (std::size_t i = 1; i < path.size(); ++i) {
-      vertex_[start_of(path[i])].band = number_;
+      vertices_[start_of(path[i])].place = VertexState::in_band;
       ring.push_back(start_of(path[i]));
     }
     for (std::uint32_t width = 0; width < kBandWidth; ++width, ring.swap(next)) {
@@ -87,14 +116,10 @@ class Straightener {
       for (const std::uint32_t v : ring)
         for_each_leaving(v, [&](HalfEdge h) {
           const std::uint32_t u = end_of(h);
-          VertexState& state = vertex_[u];
-          if (state.band == number_ || state.outside == number_) return;
-          if (is_inside(u)) {
-            state.band = number_;
-            next.push_back(u);
-          } else {
-            state.outside = number_;
-          }
+          VertexState& state = vertices_[u];
+          if (state.place != VertexState::unknown) return;
+          state.place = is_inside(u) ? VertexState::in_band : VertexState::outside;
+          if (state.place == VertexState::in_band) next.push_back(u);
         });
     }
   }
@@ -144,7 +169,7 @@ class Straightener {
     while (!queue_.empty()) {
       const auto [cost, v] = queue_.top();
       queue_.pop();
-      if (cost != vertex_[v].cost) continue;
+      if (cost != vertices_[v].cost) continue;
       if (v == end_) return path_to_end();
       for_each_leaving(v, [&](HalfEdge h) { reach(h, cost, most, arriving_at_end); });
     }
@@ -156,26 +181,29 @@ class Straightener {
     const std::uint32_t u = end_of(h), cost = cost_before + cost_of(h);
     const bool ends =
         u == end_ && std::find(arriving_at_end.begin(), arriving_at_end.end(), h) != arriving_at_end.end();
-    if (cost >= most || (!ends && (u == end_ || u == begin_ || vertex_[u].band != number_))) return;
-    VertexState& state = vertex_[u];
-    const bool tie = state.reached == number_ && cost == state.cost && start_of(h) < start_of(state.arriving);
-    if (state.reached == number_ && cost >= state.cost && !tie) return;
+    if (cost >= most || (!ends && (u == end_ || u == begin_))) return;
+    VertexState& state = vertices_[u];
+    if (!ends && state.place != VertexState::in_band) return;
+    const bool tie = state.reached && cost == state.cost && start_of(h) < start_of(state.arriving);
+    if (state.reached && cost >= state.cost && !tie) return;
     if (!tie) queue_.push({cost, u});
-    state.reached = number_;
+    state.reached = true;
     state.cost = cost;
     state.arriving = h;
   }
 
   [[nodiscard]] BorderPath path_to_end() const {
     BorderPath path;
-    for (std::uint32_t v = end_; v != begin_; v = start_of(path.back())) path.push_back(vertex_[v].arriving);
+    for (std::uint32_t v = end_; v != begin_; v = start_of(path.back())) path.push_back(vertices_.find(v)->arriving);
     std::reverse(path.begin(), path.end());
     return path;
   }
 
   /// Gives the faces right of the new path to the right chart, those left of it to the left one, unless sizes forbid.
   void replace(const BorderPath& path) {
-    for (const HalfEdge h : path) on_path_[h] = on_path_[twins_[h]] = number_;
+    on_path_.clear();
+    for (const HalfEdge h : path) on_path_.insert(on_path_.end(), {h, twins_[h]});
+    std::ranges::sort(on_path_);
     changed_.clear();
     bool fits = true;
     for (const HalfEdge h : path) {
@@ -186,7 +214,7 @@ class Straightener {
   }
 
   [[nodiscard]] bool flood(std::uint32_t seed, std::uint32_t from, std::uint32_t to) {
-    if (partition_.chart_of_face[seed] != from) return true;
+    if (chart_left(3 * seed) != from) return true;
     if (!may_change(seed, to)) return false;
     open_.assign(1, seed);
     change(seed, from, to);
@@ -194,7 +222,7 @@ class Straightener {
       const std::uint32_t f = open_.back();
       open_.pop_back();
       for (HalfEdge h = 3 * f; h < 3 * f + 3; ++h) {
-        if (twins_[h] == kNoTwin || on_path_[h] == number_ || chart_left(twins_[h]) != from) continue;
+        if (twins_[h] == kNoTwin || chart_left(twins_[h]) != from || std::ranges::binary_search(on_path_, h)) continue;
         if (changed_.size() >= limits_.target || !may_change(face_of(twins_[h]), to)) return false;
         change(face_of(twins_[h]), from, to);
         open_.push_back(face_of(twins_[h]));
@@ -204,7 +232,7 @@ class Straightener {
   }
 
   void change(std::uint32_t face, std::uint32_t from, std::uint32_t to) {
-    partition_.chart_of_face[face] = to;
+    chart_of(face).store(to, std::memory_order_relaxed);
     --partition_.sizes[from];
     ++partition_.sizes[to];
     changed_.push_back(face);
@@ -224,10 +252,10 @@ class Straightener {
   void undo() {
     grown_left_ = 0;
     for (auto it = changed_.rbegin(); it != changed_.rend(); ++it) {
-      std::uint32_t& chart = partition_.chart_of_face[*it];
-      --partition_.sizes[chart];
-      chart = chart == left_ ? right_ : left_;
-      ++partition_.sizes[chart];
+      const std::uint32_t was = chart_left(3 * *it), is = was == left_ ? right_ : left_;
+      --partition_.sizes[was];
+      ++partition_.sizes[is];
+      chart_of(*it).store(is, std::memory_order_relaxed);
     }
   }
 
@@ -238,9 +266,9 @@ class Straightener {
   const SizeLimits& limits_;
   Partition& partition_;
   const MoveRules* rules_;
-  std::uint32_t number_ = 0, left_ = 0, right_ = 0, begin_ = 0, end_ = 0;
-  std::vector<VertexState> vertex_;
-  std::vector<std::uint32_t> on_path_;  ///< number of the border whose new path runs along the half-edge
+  std::uint32_t left_ = 0, right_ = 0, begin_ = 0, end_ = 0;
+  VertexTable<VertexState> vertices_;
+  std::vector<HalfEdge> on_path_;  ///< the new path both ways, ascending
   using Entry = std::pair<std::uint32_t, std::uint32_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
   std::vector<std::uint32_t> open_, changed_;
@@ -258,8 +286,15 @@ BorderStraightener::BorderStraightener(const IndexedMesh& mesh, const std::vecto
   mean_length_ = sum / static_cast<double>(twins.size());
 }
 
-void BorderStraightener::run(const SizeLimits& limits, Partition& partition, const MoveRules* rules) const {
-  Straightener(mesh_, twins_, fans_, mean_length_, limits, partition, rules).run();
+void BorderStraightener::run(const SizeLimits& limits, Partition& partition, const MoveRules* rules,
+                             unsigned threads) const {
+  std::vector<Straightener> workers(std::max(threads, 1U),
+                                    {mesh_, twins_, fans_, mean_length_, limits, partition, rules});
+  for (const std::vector<Border>& turn :
+       in_turns(trace_borders(mesh_, twins_, fans_, partition.chart_of_face), twins_, partition))
+    parallel_for(std::min(workers.size(), turn.size()), threads, [&](std::size_t w) {
+      for (std::size_t i = w; i < turn.size(); i += workers.size()) workers[w].straighten(turn[i]);
+    });
 }
 
 }  // namespace ramcdb::chartify

@@ -13,7 +13,9 @@ class BorderStraightener {
   BorderStraightener(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins);
 
   /// \param rules which faces may change sides; nullptr: all
-  void run(const SizeLimits& limits, Partition& partition, const MoveRules* rules = nullptr) const;
+  /// \param threads change the time, never the result
+  void run(const SizeLimits& limits, Partition& partition, const MoveRules* rules = nullptr,
+           unsigned threads = 1) const;
 
  private:
   const IndexedMesh& mesh_;
