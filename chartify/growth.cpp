@@ -194,7 +194,7 @@ Partition grow_charts(const IndexedMesh& mesh, const Neighbours& neighbours, con
     if (progress) progress(static_cast<double>(i) / (iterations + 1));
     grower.move_seeds();
     grower.balance();
-    grower.grow(i <= iterations - kWholeGrowths ? kBlock : mesh.faces.size());
+    grower.grow(i <= iterations - kWholeGrowths ? kBlock : std::max<std::size_t>(mesh.faces.size(), 1));
   }
   return grower.take();
 }

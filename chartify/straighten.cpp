@@ -6,7 +6,7 @@
 #include <queue>
 #include <utility>
 
-#include "chartify/parallel.h"
+#include "chartify/turns.h"
 #include "chartify/vertex_table.h"
 
 namespace ramcdb::chartify {
@@ -21,26 +21,20 @@ double edge_length(const IndexedMesh& mesh, std::uint32_t u, std::uint32_t v) {
   return std::sqrt(square(p.x - q.x) + square(p.y - q.y) + square(p.z - q.z));
 }
 
-struct Border {
+/// A border that runs from corner to corner, and the charts beside it.
+struct BorderBetween {
   BorderPath path;
   std::uint32_t left, right;
 };
 
-/// Borders of one turn have no chart in common, and each comes behind those before it that have one in common with it.
-/// So all that it sees is the same as if there were no turns.
-std::vector<std::vector<Border>> in_turns(std::vector<BorderPath> paths, const std::vector<HalfEdge>& twins,
-                                          const Partition& partition) {
-  std::vector<std::vector<Border>> turns;
-  std::vector<std::size_t> next_of_chart(partition.sizes.size(), 0);
+std::vector<BorderBetween> between_charts(std::vector<BorderPath> paths, const std::vector<HalfEdge>& twins,
+                                          const std::vector<std::uint32_t>& chart_of_face) {
+  std::vector<BorderBetween> borders;
   for (BorderPath& path : paths) {
-    const std::uint32_t left = partition.chart_of_face[face_of(path.front())];
-    const std::uint32_t right = partition.chart_of_face[face_of(twins[path.front()])];
-    const std::size_t turn = std::max(next_of_chart[left], next_of_chart[right]);
-    next_of_chart[left] = next_of_chart[right] = turn + 1;
-    turns.resize(std::max(turns.size(), turn + 1));
-    turns[turn].push_back({std::move(path), left, right});
+    const HalfEdge first = path.front();
+    borders.push_back({std::move(path), chart_of_face[face_of(first)], chart_of_face[face_of(twins[first])]});
   }
-  return turns;
+  return borders;
 }
 
 /// Straightens one border after the other. Several may work at a time on borders without a common chart.
@@ -56,7 +50,7 @@ class Straightener {
         partition_(partition),
         rules_(rules) {}
 
-  void straighten(const Border& border) {
+  void straighten(const BorderBetween& border) {
     const BorderPath& path = border.path;
     left_ = border.left;
     right_ = border.right;
@@ -290,11 +284,10 @@ void BorderStraightener::run(const SizeLimits& limits, Partition& partition, con
                              unsigned threads) const {
   std::vector<Straightener> workers(std::max(threads, 1U),
                                     {mesh_, twins_, fans_, mean_length_, limits, partition, rules});
-  for (const std::vector<Border>& turn :
-       in_turns(trace_borders(mesh_, twins_, fans_, partition.chart_of_face), twins_, partition))
-    parallel_for(std::min(workers.size(), turn.size()), threads, [&](std::size_t w) {
-      for (std::size_t i = w; i < turn.size(); i += workers.size()) workers[w].straighten(turn[i]);
-    });
+  const std::vector<std::uint32_t>& chart_of_face = partition.chart_of_face;
+  work_in_turns(between_charts(trace_borders(mesh_, twins_, fans_, chart_of_face), twins_, chart_of_face),
+                partition.sizes.size(), workers,
+                [](Straightener& worker, const BorderBetween& border) { worker.straighten(border); });
 }
 
 }  // namespace ramcdb::chartify
