@@ -19,7 +19,7 @@ constexpr std::uint32_t kFirstWeight = 16 * 256, kSmallestWeight = 5 * 256, kLar
 
 // Faces that charts grow in at first, block by block at the same time; and how often they grow in all of the mesh then.
 constexpr std::size_t kBlock = 1 << 18;
-constexpr int kWholeGrowths = 2;
+constexpr int kWholeGrowths = 3;
 
 /// What growth reads and writes of a face, together in memory.
 struct Cell {
