@@ -17,10 +17,6 @@ __extension__ using Wide = unsigned __int128;
 // What a chart pays for each further face, in 1/256; the balance term makes big charts pay more.
 constexpr std::uint32_t kFirstWeight = 16 * 256, kSmallestWeight = 5 * 256, kLargestWeight = 48 * 256;
 
-// Faces that charts grow in at first, block by block at the same time; and how often they grow in all of the mesh then.
-constexpr std::size_t kBlock = 1 << 18;
-constexpr int kWholeGrowths = 3;
-
 /// What growth reads and writes of a face, together in memory.
 struct Cell {
   static constexpr std::uint32_t kTaken = 0, kFree = ~std::uint32_t{0};
@@ -42,15 +38,29 @@ class Grower {
       std::copy_n(neighbours.begin() + static_cast<std::ptrdiff_t>(3 * f), 3, cells_[f].neighbours.begin());
   }
 
-  /// In blocks of so many faces, across whose borders nobody grows; charts stay in the block of their seeds.
-  void grow(std::size_t block) {
+  void grow() {
     partition_.chart_of_face.assign(mesh_.faces.size(), kNone);
     partition_.sizes.assign(seeds_.size(), 0);
-    const std::size_t blocks = (cells_.size() + block - 1) / block;
-    parallel_for(blocks, threads_, [&](std::size_t b) {
-      const auto begin = static_cast<std::uint32_t>(b * block);
-      grow_within(begin, static_cast<std::uint32_t>(std::min(block, cells_.size() - begin)));
-    });
+    for (Cell& cell : cells_) cell.least = Cell::kFree;
+    BucketQueue queue;
+    for (std::uint32_t c = 0; c < seeds_.size(); ++c) queue.push(0, {seeds_[c], c});
+    for (std::vector<BucketQueue::Entry> wanted; !queue.empty();) {
+      const std::uint64_t key = queue.pop_all(wanted);
+      for (; !wanted.empty(); wanted.pop_back()) {
+        prefetch(wanted);
+        const BucketQueue::Entry entry = wanted.back();
+        if (cells_[entry.face].least == Cell::kTaken) continue;
+        take(entry);
+        // Along a strip of 89 million faces keys become too large to be told apart by `least`.
+        const std::uint64_t next_key = key + weights_[entry.chart] / 256;
+        const auto least = static_cast<std::uint32_t>(std::min<std::uint64_t>(next_key, Cell::kFree - 1));
+        for (const std::uint32_t g : cells_[entry.face].neighbours) {
+          if (g == kNone || least >= cells_[g].least) continue;
+          cells_[g].least = least;
+          queue.push(next_key, {g, entry.chart});
+        }
+      }
+    }
   }
 
   void move_seeds() {
@@ -120,33 +130,6 @@ class Grower {
     return distance;
   }
 
-  void grow_within(std::uint32_t begin, std::uint32_t size) {
-    for (std::uint32_t f = begin; f < begin + size; ++f) cells_[f].least = Cell::kFree;
-    const auto is_before = [](std::uint32_t end) { return [=](std::uint32_t seed) { return seed < end; }; };
-    const auto first = std::ranges::partition_point(seeds_, is_before(begin));
-    const auto last = std::partition_point(first, seeds_.end(), is_before(begin + size));
-    BucketQueue queue;
-    for (auto seed = first; seed != last; ++seed)
-      queue.push(0, {*seed, static_cast<std::uint32_t>(seed - seeds_.begin())});
-    for (std::vector<BucketQueue::Entry> wanted; !queue.empty();) {
-      const std::uint64_t key = queue.pop_all(wanted);
-      for (; !wanted.empty(); wanted.pop_back()) {
-        prefetch(wanted);
-        const BucketQueue::Entry entry = wanted.back();
-        if (cells_[entry.face].least == Cell::kTaken) continue;
-        take(entry);
-        // Along a strip of 89 million faces keys become too large to be told apart by `least`.
-        const std::uint64_t next_key = key + weights_[entry.chart] / 256;
-        const auto least = static_cast<std::uint32_t>(std::min<std::uint64_t>(next_key, Cell::kFree - 1));
-        for (const std::uint32_t g : cells_[entry.face].neighbours) {
-          if (g - begin >= size || least >= cells_[g].least) continue;
-          cells_[g].least = least;
-          queue.push(next_key, {g, entry.chart});
-        }
-      }
-    }
-  }
-
   void take(BucketQueue::Entry wanted) {
     cells_[wanted.face].least = Cell::kTaken;
     partition_.chart_of_face[wanted.face] = wanted.chart;
@@ -189,12 +172,12 @@ std::vector<std::uint32_t> spread_seeds(const Regions& regions) {
 Partition grow_charts(const IndexedMesh& mesh, const Neighbours& neighbours, const Regions& regions, int iterations,
                       const Progress& progress, unsigned threads) {
   Grower grower(mesh, neighbours, regions, threads);
-  grower.grow(kBlock);
+  grower.grow();
   for (int i = 1; i <= iterations; ++i) {
     if (progress) progress(static_cast<double>(i) / (iterations + 1));
     grower.move_seeds();
     grower.balance();
-    grower.grow(i <= iterations - kWholeGrowths ? kBlock : std::max<std::size_t>(mesh.faces.size(), 1));
+    grower.grow();
   }
   return grower.take();
 }
