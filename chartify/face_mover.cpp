@@ -20,17 +20,23 @@ std::array<std::uint32_t, 3> FaceMover::charts_around(std::uint32_t face) const 
   return around;
 }
 
-std::optional<int> FaceMover::gain(std::uint32_t face, std::uint32_t to) const {
+int FaceMover::gain(const std::array<std::uint32_t, 3>& around, std::uint32_t from, std::uint32_t to) const {
+  return static_cast<int>(std::count(around.begin(), around.end(), to) -
+                          std::count(around.begin(), around.end(), from));
+}
+
+FaceMover::Choice FaceMover::best_choice(std::uint32_t face) const {
+  const auto around = charts_around(face);
   const std::uint32_t from = chart(face);
-  int in_to = 0, in_from = 0;
-  for (std::uint32_t e = 0; e < 3; ++e) {
-    const std::uint32_t g = neighbour(face, e);
-    if (g == kNone) continue;
-    in_to += chart(g) == to;
-    in_from += chart(g) == from;
+  Choice best;
+  for (const std::uint32_t to : around) {
+    if (to == kNone || to == from || to == best.to || !may_move(face, to)) continue;
+    const Choice choice{to, gain(around, from, to)};
+    if (best.to == kNone || choice.gain > best.gain ||
+        (choice.gain == best.gain && std::pair(size(to), to) < std::pair(size(best.to), best.to)))
+      best = choice;
   }
-  if (in_to == 0 || !may_move(face, to)) return {};
-  return in_to - in_from;
+  return best;
 }
 
 FaceMover::Choice FaceMover::smallest_choice(std::uint32_t face) const {
@@ -39,7 +45,8 @@ FaceMover::Choice FaceMover::smallest_choice(std::uint32_t face) const {
   Choice best;
   for (const std::uint32_t to : around) {
     if (to == kNone || to == from || size(to) >= size(from) || !may_move(face, to)) continue;
-    if (best.to == kNone || std::pair(size(to), to) < std::pair(size(best.to), best.to)) best = {to, *gain(face, to)};
+    if (best.to == kNone || std::pair(size(to), to) < std::pair(size(best.to), best.to))
+      best = {to, gain(around, from, to)};
   }
   return best;
 }
