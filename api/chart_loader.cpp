@@ -4,8 +4,8 @@
 
 #include <map>
 
-#include "api/parallel.h"
 #include "api/store_format.h"
+#include "chartify/parallel.h"
 #include "codec/exact_codec.h"
 #include "codec/wire_codec.h"
 #include "ramcdb/error.h"

@@ -7,10 +7,10 @@
 #include "api/commit.h"
 #include "api/decimation.h"
 #include "api/edited_region_builder.h"
-#include "api/parallel.h"
 #include "api/repository_impl.h"
 #include "api/snapshot_impl.h"
 #include "api/value_interpolation.h"
+#include "chartify/parallel.h"
 #include "ramcdb/built_in_edits.h"
 #include "ramcdb/error.h"
 
@@ -32,7 +32,7 @@ class RegionDecimation {
   EditedRegion run(unsigned threads, const Progress& progress) {
     const detail::QuietOpenMesh quiet;
     charts_.resize(region_.charts.size());
-    detail::parallel_for(
+    parallel_for(
         charts_.size(), threads, [&](std::size_t c) { charts_[c] = decimated(c); },
         [&](double done) {
           if (progress) progress("decimate", done);

@@ -5,10 +5,10 @@
 #include <set>
 
 #include "api/edit_builder.h"
-#include "api/parallel.h"
 #include "api/recut_encoder.h"
 #include "api/region_query.h"
 #include "api/store_format.h"
+#include "chartify/parallel.h"
 
 namespace ramcdb::detail {
 namespace {

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "api/parallel.h"
 #include "api/scratch_records.h"
+#include "chartify/parallel.h"
 
 namespace ramcdb::detail {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "api/external_sort.h"
-#include "api/parallel.h"
 #include "chartify/hilbert_cells.h"
+#include "chartify/parallel.h"
 
 namespace ramcdb::detail {
 namespace {

@@ -13,6 +13,7 @@
 #include "api/snapping.h"
 #include "api/topology.h"
 #include "chartify/chartify.h"
+#include "chartify/parallel.h"
 #include "ramcdb/error.h"
 
 namespace ramcdb::detail {
@@ -82,12 +83,11 @@ ImportReport import_in_core(db::Store& store, const std::filesystem::path& file,
   record.polygons = report.polygons = cut.polygons;
   report.polygons_as_fans = cut.fans;
   chartify::CanonicalMesh canonical =
-      chartify::canonical_order({std::move(points), mesh_file::triangles_of(data, cut)});
+      chartify::canonical_order({std::move(points), mesh_file::triangles_of(data, cut)}, options.threads);
   const LayerSource layers(data, cut, canonical, record, exact, options.lossless || options.lossless_attributes);
   canonical.mesh.polygon_of_face = layers.polygon_of_face();
   record.vertices = canonical.mesh.positions.size();
   record.faces = canonical.mesh.faces.size();
-  note_topology(record, analyze(canonical.mesh));
   for (const LatticePoint p : canonical.mesh.positions) record.range.add(p);
 
   chartify::Options chartify_options;
@@ -95,8 +95,12 @@ ImportReport import_in_core(db::Store& store, const std::filesystem::path& file,
   chartify_options.method = options.paper_chartify ? chartify::Method::paper : chartify::Method::refined;
   chartify_options.threads = options.threads;
   chartify_options.progress = stage(options.progress, "chartify");
-  const chartify::Charts charts = chartify::chartify(canonical.mesh, chartify_options);
-  const chartify::WireNet net = chartify::build_wire_net(canonical.mesh, charts);
+  chartify::Adjacency adjacency(canonical.mesh);
+  chartify::Charts charts;
+  run_beside(
+      options.threads, [&] { note_topology(record, analyze(canonical.mesh, adjacency)); },
+      [&] { charts = chartify::chartify(canonical.mesh, adjacency, chartify_options); });
+  const chartify::WireNet net = chartify::build_wire_net(canonical.mesh, std::move(adjacency), charts, options.threads);
 
   const codec::CoderTables tables = train_tables(net, record.profile, record.vertices);
   if (!(tables == codec::CoderTables{})) record.table = record.next_table;

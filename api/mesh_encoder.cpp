@@ -4,8 +4,8 @@
 #include <set>
 
 #include "api/page_index.h"
-#include "api/parallel.h"
 #include "api/surface_pieces.h"
+#include "chartify/parallel.h"
 #include "codec/dense_training.h"
 #include "codec/fast_training.h"
 #include "codec/wire_codec.h"

@@ -3,13 +3,13 @@
 #include <algorithm>
 
 #include "api/layer_encoder.h"
-#include "api/parallel.h"
 #include "api/recut_comparison.h"
 #include "api/recut_surface.h"
 #include "api/region_faces.h"
 #include "api/store_format.h"
 #include "api/surface_pieces.h"
 #include "api/topology.h"
+#include "chartify/parallel.h"
 #include "chartify/wire_net_builder.h"
 #include "codec/wire_codec.h"
 #include "ramcdb/error.h"

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "api/chart_loader.h"
-#include "api/parallel.h"
 #include "api/spooled_edit.h"
+#include "chartify/parallel.h"
 #include "ramcdb/error.h"
 
 namespace ramcdb::detail {

@@ -7,8 +7,8 @@
 
 #include "api/chart_loader.h"
 #include "api/chart_recoder.h"
-#include "api/parallel.h"
 #include "api/region_query.h"
+#include "chartify/parallel.h"
 #include "codec/wire_codec.h"
 
 namespace ramcdb::detail {

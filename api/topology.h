@@ -4,6 +4,7 @@
 #include <span>
 
 #include "chartify/chartify.h"
+#include "chartify/half_edge_twins.h"
 
 namespace ramcdb::detail {
 
@@ -21,6 +22,7 @@ struct Topology {
 };
 
 [[nodiscard]] Topology analyze(const chartify::IndexedMesh& mesh);
+[[nodiscard]] Topology analyze(const chartify::IndexedMesh& mesh, const chartify::Adjacency& adjacency);
 
 // Of a mesh in parts: what each part has to itself, and what is between vertices that several parts have. The sum is
 // what the whole mesh is like.

@@ -7,9 +7,9 @@
 #include <tuple>
 
 #include "api/chart_loader.h"
-#include "api/parallel.h"
 #include "api/snapshot_impl.h"
 #include "api/surface_pieces.h"
+#include "chartify/parallel.h"
 #include "codec/page_codec.h"
 #include "ramcdb/error.h"
 

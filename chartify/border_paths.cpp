@@ -34,11 +34,12 @@ class Tracer {
 
   std::vector<BorderPath> run() {
     std::vector<BorderPath> paths;
-    for (HalfEdge h = 0; h < twins_.size(); ++h) {
-      if (traced_[h] || !is_border(h)) continue;
-      BorderPath path = trace(h);
-      if (!path.empty()) paths.push_back(std::move(path));
-    }
+    for (std::uint32_t f = 0; f < chart_of_face_.size(); ++f)
+      for (HalfEdge h = 3 * f; h < 3 * f + 3; ++h) {
+        if (twins_[h] == kNoTwin || chart_of_face_[face_of(twins_[h])] == chart_of_face_[f] || traced_[h]) continue;
+        BorderPath path = trace(h);
+        if (!path.empty()) paths.push_back(std::move(path));
+      }
     return paths;
   }
 

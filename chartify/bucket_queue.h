@@ -8,7 +8,7 @@
 namespace ramcdb::chartify {
 
 /// A priority queue of faces that charts want, for keys that never fall behind the last popped one by more than the
-/// ring; last in, first out among equal keys.
+/// ring.
 class BucketQueue {
  public:
   static constexpr std::size_t kBuckets = 1024;  // more than any step, so that the ring never laps itself
@@ -22,14 +22,13 @@ class BucketQueue {
     ++size_;
   }
   [[nodiscard]] bool empty() const { return size_ == 0; }
-  Entry pop(std::uint64_t& key) {
+  /// Replaces `entries` by those of the least key, in the order in which they were pushed. REQUIRES: not empty
+  std::uint64_t pop_all(std::vector<Entry>& entries) {
     while (ring_[key_ % kBuckets].empty()) ++key_;
-    key = key_;
-    std::vector<Entry>& bucket = ring_[key_ % kBuckets];
-    const Entry entry = bucket.back();
-    bucket.pop_back();
-    --size_;
-    return entry;
+    entries.clear();
+    entries.swap(ring_[key_ % kBuckets]);
+    size_ -= entries.size();
+    return key_;
   }
 
  private:

@@ -1,12 +1,13 @@
 #include <algorithm>
 #include <array>
-#include <numeric>
+#include <mutex>
 #include <tuple>
 
 #include "chartify/chartify.h"
 #include "chartify/half_edge_twins.h"
 #include "chartify/hilbert_cells.h"
-#include "chartify/partition.h"
+#include "chartify/parallel.h"
+#include "chartify/radix_sort.h"
 
 namespace ramcdb::chartify {
 namespace {
@@ -19,26 +20,32 @@ struct CornerMark {
 };
 using FaceMark = std::array<CornerMark, 3>;
 
+/// A face, where it lies on the curve, and from which corner on it is named.
+struct Place {
+  std::uint64_t key;
+  std::uint32_t face;
+  std::uint32_t turn;
+};
+
 class Sorter {
  public:
-  explicit Sorter(const IndexedMesh& mesh) : mesh_(mesh), twins_(find_twins(mesh, group_half_edges(mesh))) {}
+  Sorter(const IndexedMesh& mesh, unsigned threads) : mesh_(mesh), threads_(threads), cells_(mesh) {}
 
   CanonicalMesh run() {
-    const std::size_t faces = mesh_.faces.size();
-    const HilbertCells cells(mesh_);
-    turn_.resize(faces);
-    key_.resize(faces);
-    for (std::uint32_t f = 0; f < faces; ++f) {
-      turn_[f] = smallest_turn(f);
-      key_[f] = cells.key_of_face(f);
+    std::vector<Place> places(mesh_.faces.size());
+    parallel_ranges(places.size(), threads_, [&](std::size_t begin, std::size_t end) {
+      for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f)
+        places[f] = {cells_.key_of_face(f), f, smallest_turn(f)};
+    });
+    radix_sort(places, &Place::key);
+    const auto same_key = [](const Place& a, const Place& b) { return a.key != b.key; };
+    for (auto first = places.begin(); first != places.end();) {
+      const auto last = std::adjacent_find(first, places.end(), same_key);
+      const auto end = last == places.end() ? last : last + 1;
+      if (end - first > 1) std::sort(first, end, [&](const Place& a, const Place& b) { return comes_before(a, b); });
+      first = end;
     }
-    CanonicalMesh out;
-    out.source_face.resize(faces);
-    std::iota(out.source_face.begin(), out.source_face.end(), 0U);
-    std::sort(out.source_face.begin(), out.source_face.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return comes_before(a, b); });
-    number_vertices(out, cells);
-    return out;
+    return number_vertices(places);
   }
 
  private:
@@ -47,9 +54,10 @@ class Sorter {
   }
 
   [[nodiscard]] FaceMark mark(std::uint32_t face, std::uint32_t turn) const {
+    const std::vector<HalfEdge>& twins = twins_of_mesh();
     FaceMark m;
     for (std::uint32_t i = 0; i < 3; ++i) {
-      const HalfEdge twin = twins_[3 * face + (i + turn) % 3];
+      const HalfEdge twin = twins[3 * face + (i + turn) % 3];
       // Where there is no neighbour a point outside the lattice stands for the apex.
       const LatticePoint none{kMaxLatticeCoordinate + 1, 0, 0};
       const LatticePoint apex =
@@ -60,7 +68,7 @@ class Sorter {
   }
 
   /// The turn that makes the sequence of positions smallest; apexes decide where two turns give the same.
-  [[nodiscard]] std::uint8_t smallest_turn(std::uint32_t face) const {
+  [[nodiscard]] std::uint32_t smallest_turn(std::uint32_t face) const {
     const auto positions = [&](std::uint32_t turn) {
       return std::array{position(face, turn, 0), position(face, turn, 1), position(face, turn, 2)};
     };
@@ -69,19 +77,26 @@ class Sorter {
       const auto order = positions(turn) <=> positions(best);
       if (order < 0 || (order == 0 && mark(face, turn) < mark(face, best))) best = turn;
     }
-    return static_cast<std::uint8_t>(best);
+    return best;
   }
 
-  [[nodiscard]] bool comes_before(std::uint32_t a, std::uint32_t b) const {
-    if (key_[a] != key_[b]) return key_[a] < key_[b];
+  /// REQUIRES: equal keys
+  [[nodiscard]] bool comes_before(const Place& a, const Place& b) const {
     for (std::uint32_t i = 0; i < 3; ++i)
-      if (const auto order = position(a, turn_[a], i) <=> position(b, turn_[b], i); order != 0) return order < 0;
-    const FaceMark mark_a = mark(a, turn_[a]), mark_b = mark(b, turn_[b]);
-    return mark_a != mark_b ? mark_a < mark_b : a < b;
+      if (const auto order = position(a.face, a.turn, i) <=> position(b.face, b.turn, i); order != 0) return order < 0;
+    const FaceMark mark_a = mark(a.face, a.turn), mark_b = mark(b.face, b.turn);
+    return mark_a != mark_b ? mark_a < mark_b : a.face < b.face;
+  }
+
+  /// Found when equal positions first ask for them, which few meshes do.
+  [[nodiscard]] const std::vector<HalfEdge>& twins_of_mesh() const {
+    std::call_once(twins_found_, [&] { twins_ = find_twins(mesh_, group_half_edges(mesh_)); });
+    return twins_;
   }
 
   /// Vertices in the order in which the sorted faces first name them; isolated ones behind, along the curve.
-  void number_vertices(CanonicalMesh& out, const HilbertCells& cells) const {
+  [[nodiscard]] CanonicalMesh number_vertices(const std::vector<Place>& places) const {
+    CanonicalMesh out;
     std::vector<std::uint32_t> to(mesh_.positions.size(), kNone);
     const auto number = [&](std::uint32_t v) {
       if (to[v] == kNone) {
@@ -90,30 +105,36 @@ class Sorter {
       }
       return to[v];
     };
-    out.mesh.faces.reserve(mesh_.faces.size());
-    for (const std::uint32_t f : out.source_face) {
+    out.source_vertex.reserve(to.size());
+    out.source_face.reserve(places.size());
+    out.mesh.faces.reserve(places.size());
+    for (const Place& place : places) {
+      const Triangle& corners = mesh_.faces[place.face];
       Triangle t{};
-      for (std::uint32_t i = 0; i < 3; ++i) t[i] = number(mesh_.faces[f][(i + turn_[f]) % 3]);
+      for (std::uint32_t i = 0; i < 3; ++i) t[i] = number(corners[(i + place.turn) % 3]);
       out.mesh.faces.push_back(t);
+      out.source_face.push_back(place.face);
     }
     std::vector<std::uint32_t> isolated;
     for (std::uint32_t v = 0; v < to.size(); ++v)
       if (to[v] == kNone) isolated.push_back(v);
-    const auto rank = [&](std::uint32_t v) { return std::tuple(cells.key_of_vertex(v), mesh_.positions[v], v); };
+    const auto rank = [&](std::uint32_t v) { return std::tuple(cells_.key_of_vertex(v), mesh_.positions[v], v); };
     std::sort(isolated.begin(), isolated.end(), [&](std::uint32_t a, std::uint32_t b) { return rank(a) < rank(b); });
     for (const std::uint32_t v : isolated) number(v);
     out.mesh.positions.reserve(out.source_vertex.size());
     for (const std::uint32_t v : out.source_vertex) out.mesh.positions.push_back(mesh_.positions[v]);
+    return out;
   }
 
   const IndexedMesh& mesh_;
-  std::vector<HalfEdge> twins_;
-  std::vector<std::uint8_t> turn_;
-  std::vector<std::uint64_t> key_;
+  unsigned threads_;
+  HilbertCells cells_;
+  mutable std::once_flag twins_found_;
+  mutable std::vector<HalfEdge> twins_;
 };
 
 }  // namespace
 
-CanonicalMesh canonical_order(const IndexedMesh& mesh) { return Sorter(mesh).run(); }
+CanonicalMesh canonical_order(const IndexedMesh& mesh, unsigned threads) { return Sorter(mesh, threads).run(); }
 
 }  // namespace ramcdb::chartify

@@ -22,14 +22,15 @@ constexpr double kGrowthShare = 0.5;  // of the time, for the progress
 
 /// The default recipe (chartify/RECIPE.md), behind its first stage.
 void refine(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const Neighbours& neighbours,
-            const Progress& progress, const SizeLimits& limits, Partition& partition) {
+            const Progress& progress, const SizeLimits& limits, unsigned threads, Partition& partition) {
   FaceMover mover(twins, limits, partition);
   rebalance(mover, limits, static_cast<std::uint32_t>(partition.sizes.size()));
   split_oversized(mesh, neighbours, limits, partition);
+  const BorderStraightener straightener(mesh, twins);
   for (int i = 0; i < kRefinements; ++i) {
     progress(static_cast<double>(i) / kRefinements);
     move_faces(mover);
-    straighten_borders(mesh, twins, limits, partition);
+    straightener.run(limits, partition, nullptr, threads);
   }
   merge_pieces(neighbours, partition);
 }
@@ -39,11 +40,12 @@ Partition refined_charts(const IndexedMesh& mesh, const std::vector<HalfEdge>& t
   const auto progress = [&](double done) {
     if (options.progress) options.progress(done);
   };
-  Partition partition =
-      grow_charts(mesh, neighbours, components, kLloydIterations, [&](double done) { progress(kGrowthShare * done); });
+  Partition partition = grow_charts(
+      mesh, neighbours, components, kLloydIterations, [&](double done) { progress(kGrowthShare * done); },
+      options.threads);
   refine(
       mesh, twins, neighbours, [&](double done) { progress(kGrowthShare + (1 - kGrowthShare) * done); },
-      SizeLimits(options.target_faces), partition);
+      SizeLimits(options.target_faces), options.threads, partition);
   return partition;
 }
 
@@ -84,9 +86,9 @@ void keep_apart(const IndexedMesh& mesh, const Regions& components, std::span<co
   }
 }
 
-Charts cut(const IndexedMesh& mesh, std::span<const std::uint32_t> later, const Options& options) {
+Charts cut(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, std::span<const std::uint32_t> later,
+           const Options& options) {
   require_target(options);
-  const std::vector<HalfEdge> twins = find_twins(mesh, group_half_edges(mesh));
   const Neighbours neighbours = find_neighbours(twins);
   const Regions components = find_components(neighbours, options.target_faces);
   Partition partition = options.method == Method::paper ? paper_charts(mesh, twins, neighbours, components, options)
@@ -97,12 +99,18 @@ Charts cut(const IndexedMesh& mesh, std::span<const std::uint32_t> later, const 
 
 }  // namespace
 
-Charts chartify(const IndexedMesh& mesh, const Options& options) { return cut(mesh, {}, options); }
+Charts chartify(const IndexedMesh& mesh, const Options& options) {
+  return cut(mesh, find_twins(mesh, group_half_edges(mesh)), {}, options);
+}
+
+Charts chartify(const IndexedMesh& mesh, const Adjacency& adjacency, const Options& options) {
+  return cut(mesh, adjacency.twins, {}, options);
+}
 
 BlockCharts cut_block(const IndexedMesh& mesh, std::span<const std::uint32_t> later, const Options& options) {
   if (later.size() != mesh.positions.size())
     throw Error(Errc::invalid_argument, "a block of another number of vertices", "chartify");
-  BlockCharts out{cut(mesh, later, options), {}};
+  BlockCharts out{cut(mesh, find_twins(mesh, group_half_edges(mesh)), later, options), {}};
   out.waits_for.assign(out.charts.chart_count, kNone);
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
     for (const std::uint32_t v : mesh.faces[f]) {
@@ -136,7 +144,7 @@ Charts refine_cut(const IndexedMesh& mesh, std::vector<std::uint32_t> chart_of_f
   const auto progress = [&](double done) {
     if (options.progress) options.progress(done);
   };
-  refine(mesh, twins, neighbours, progress, SizeLimits(options.target_faces), partition);
+  refine(mesh, twins, neighbours, progress, SizeLimits(options.target_faces), options.threads, partition);
   return charts_of(mesh, components, options, partition);
 }
 

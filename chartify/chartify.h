@@ -33,8 +33,8 @@ struct CanonicalMesh {
 /// Puts faces along a Hilbert curve and turns each to its smallest corner first, vertices in the order of their first
 /// face, isolated ones last. The result depends on the geometry only, not on the order or rotation of the input's faces
 /// nor on its vertex order (ties between faces with equal positions are broken by their neighbours' positions, and only
-/// then by input order).
-[[nodiscard]] CanonicalMesh canonical_order(const IndexedMesh& mesh);
+/// then by input order), nor on the number of threads.
+[[nodiscard]] CanonicalMesh canonical_order(const IndexedMesh& mesh, unsigned threads = 1);
 
 enum class Method {
   refined,  ///< growth, Lloyd, rebalancing, face moves and wire straightening (the default)
@@ -61,6 +61,9 @@ struct Charts {
 };
 /// Errors: invalid_argument for a target out of range.
 [[nodiscard]] Charts chartify(const IndexedMesh& mesh, const Options& options);
+struct Adjacency;
+/// Where the mesh's adjacency is known (half_edge_twins.h).
+[[nodiscard]] Charts chartify(const IndexedMesh& mesh, const Adjacency& adjacency, const Options& options);
 
 /// Likewise, from a first cut by somebody else: only the later stages of Method::refined. Components of less than half
 /// the target are packed as chartify() packs them, whatever the cut says of them.

@@ -8,13 +8,13 @@
 
 namespace ramcdb::chartify {
 
-CutSurface::CutSurface(const IndexedMesh& mesh, const std::vector<std::uint32_t>& chart_of_face,
+CutSurface::CutSurface(const IndexedMesh& mesh, Adjacency adjacency, const std::vector<std::uint32_t>& chart_of_face,
                        std::span<const FixedWire> fixed, std::span<const std::uint32_t> corners)
     : mesh_(mesh),
       corners_(corners),
-      edges_(group_half_edges(mesh)),
+      edges_(std::move(adjacency.edges)),
       fixed_(mesh, edges_, fixed),
-      mate_(find_twins(mesh, edges_)) {
+      mate_(std::move(adjacency.twins)) {
   for (HalfEdge h = 0; h < mate_.size(); ++h)
     if (mate_[h] != kNoTwin &&
         (chart_of_face[face_of(h)] != chart_of_face[face_of(mate_[h])] || fixed_.contains(edge_of(h))))
@@ -29,14 +29,17 @@ CutSurface::CutSurface(const IndexedMesh& mesh, const std::vector<std::uint32_t>
 
 void CutSurface::cut(HalfEdge h) {
   if (mate_[h] == kNoTwin) return;
+  borders_.insert(borders_.end(), {h, mate_[h]});
   mate_[mate_[h]] = kNoTwin;
   mate_[h] = kNoTwin;
 }
 
 void CutSurface::find_fans() {
   fans_.clear();
+  borders_.clear();
   fan_of_.assign(mate_.size(), kNone);
   for (HalfEdge h = 0; h < mate_.size(); ++h) {
+    if (is_border(h)) borders_.push_back(h);
     if (fan_of_[h] != kNone) continue;
     HalfEdge first = h;
     while (mate_[first] != kNoTwin) {
@@ -97,8 +100,9 @@ std::size_t CutSurface::part_doubled_edges() {
 
 std::size_t CutSurface::lengthen_short_loops() {
   std::size_t cuts = 0;
-  for (HalfEdge h = 0; h < mate_.size(); ++h) {
-    if (!is_border(h)) continue;
+  std::vector<HalfEdge> borders = borders_;  // what is cut here lies on loops that are long by then
+  std::sort(borders.begin(), borders.end());
+  for (const HalfEdge h : borders) {
     const HalfEdge second = next_on_border(h);
     if (second == h || next_on_border(second) != h) continue;
     // The third vertex of the face is not on this loop, so that a cut towards it adds to the loop and never splits it.

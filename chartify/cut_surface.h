@@ -18,9 +18,11 @@ class CutSurface {
   /// until vertices of several fans have open ones only, no loop has two vertices, and no two edges the same ends.
   /// \param fixed are cut as well
   /// \param corners vertices that have another fan outside the mesh
-  CutSurface(const IndexedMesh& mesh, const std::vector<std::uint32_t>& chart_of_face, std::span<const FixedWire> fixed,
-             std::span<const std::uint32_t> corners);
+  CutSurface(const IndexedMesh& mesh, Adjacency adjacency, const std::vector<std::uint32_t>& chart_of_face,
+             std::span<const FixedWire> fixed, std::span<const std::uint32_t> corners);
 
+  /// All border half-edges, ascending.
+  [[nodiscard]] const std::vector<HalfEdge>& borders() const { return borders_; }
   [[nodiscard]] bool is_border(HalfEdge h) const { return mate_[h] == kNoTwin; }
   /// The border half-edge that follows another on its loop.
   [[nodiscard]] HalfEdge next_on_border(HalfEdge h) const;
@@ -52,7 +54,8 @@ class CutSurface {
   std::span<const std::uint32_t> corners_;
   EdgeGroups edges_;
   FixedEdges fixed_;
-  std::vector<HalfEdge> mate_;  ///< the half-edge glued to this one
+  std::vector<HalfEdge> mate_;     ///< the half-edge glued to this one
+  std::vector<HalfEdge> borders_;  ///< those without; what find_fans has not seen yet stands behind the others
   std::vector<std::uint32_t> fan_of_;
   std::vector<Fan> fans_;
 };

@@ -61,6 +61,11 @@ class FaceMover {
   [[nodiscard]] std::uint32_t chart(std::uint32_t face) const { return partition_.chart_of_face[face]; }
   [[nodiscard]] std::uint32_t size(std::uint32_t c) const { return partition_.sizes[c]; }
   [[nodiscard]] std::uint32_t face_count() const { return static_cast<std::uint32_t>(twins_.size() / 3); }
+  /// Whether it has a neighbour in another chart.
+  [[nodiscard]] bool is_at_border(std::uint32_t face) const {
+    const auto is_other = [&](std::uint32_t g) { return g != kNone && chart(g) != chart(face); };
+    return is_other(neighbour(face, 0)) || is_other(neighbour(face, 1)) || is_other(neighbour(face, 2));
+  }
   /// kNone where the edge has no other face.
   [[nodiscard]] std::uint32_t neighbour(std::uint32_t face, std::uint32_t edge) const {
     const HalfEdge twin = twins_[3 * face + edge];

@@ -1,6 +1,7 @@
 #include "chartify/face_moves.h"
 
 #include <array>
+#include <bit>
 
 namespace ramcdb::chartify {
 namespace {
@@ -11,13 +12,17 @@ constexpr std::size_t kPatience = 30;  // moves without a new best
 
 class Climber {
  public:
-  explicit Climber(FaceMover& mover) : mover_(mover), touched_in_(mover.face_count(), 0) {}
+  explicit Climber(FaceMover& mover)
+      : mover_(mover), at_border_(mover.face_count() / kWordBits + 1), touched_in_(mover.face_count(), 0) {
+    for (std::uint32_t f = 0; f < mover_.face_count(); ++f)
+      if (mover_.is_at_border(f)) mark(f);
+  }
 
   /// One climb from every border face. Returns the edges that the borders got shorter by.
   std::int64_t run_round() {
     ++round_;
     std::int64_t gained = 0;
-    for (std::uint32_t f = 0; f < mover_.face_count(); ++f) {
+    for (std::uint32_t f = next_at_border(0); f < mover_.face_count(); f = next_at_border(f + 1)) {
       if (mover_.chart(f) == kNone || touched_in_[f] == round_) continue;
       const FaceMover::Choice choice = mover_.best_choice(f);
       if (choice.to != kNone && choice.gain >= kLeastGain) gained += climb(f);
@@ -26,6 +31,18 @@ class Climber {
   }
 
  private:
+  static constexpr std::uint32_t kWordBits = 64;
+
+  void mark(std::uint32_t face) { at_border_[face / kWordBits] |= std::uint64_t{1} << face % kWordBits; }
+
+  /// The first face from this one on that may be at a border; the number of faces where there is none.
+  [[nodiscard]] std::uint32_t next_at_border(std::uint32_t face) const {
+    std::uint32_t word = face / kWordBits;
+    std::uint64_t bits = at_border_[word] >> face % kWordBits << face % kWordBits;
+    while (bits == 0 && ++word < at_border_.size()) bits = at_border_[word];
+    return bits == 0 ? mover_.face_count() : kWordBits * word + static_cast<std::uint32_t>(std::countr_zero(bits));
+  }
+
   struct Move {
     std::uint32_t face, from;
   };
@@ -86,7 +103,10 @@ class Climber {
     touched_in_[face] = round_;
     moves_.push_back({face, from});
     for (std::uint32_t e = 0; e < 3; ++e)
-      if (const std::uint32_t g = mover_.neighbour(face, e); g != kNone) push(g);
+      if (const std::uint32_t g = mover_.neighbour(face, e); g != kNone) {
+        mark(g);
+        push(g);
+      }
   }
 
   [[nodiscard]] std::vector<std::uint32_t>& bucket(int gain) {
@@ -94,6 +114,7 @@ class Climber {
   }
 
   FaceMover& mover_;
+  std::vector<std::uint64_t> at_border_;  ///< a bit per face: set for all at borders, and for some that were
   std::vector<std::uint8_t> touched_in_;  ///< the last round in which a face was moved
   std::uint8_t round_ = 0;
   std::vector<Move> moves_;

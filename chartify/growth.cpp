@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 
 #include "chartify/bucket_queue.h"
 #include "chartify/hilbert_cells.h"
+#include "chartify/parallel.h"
 
 namespace ramcdb::chartify {
 namespace {
@@ -15,62 +17,66 @@ __extension__ using Wide = unsigned __int128;
 // What a chart pays for each further face, in 1/256; the balance term makes big charts pay more.
 constexpr std::uint32_t kFirstWeight = 16 * 256, kSmallestWeight = 5 * 256, kLargestWeight = 48 * 256;
 
+/// What growth reads and writes of a face, together in memory.
+struct Cell {
+  static constexpr std::uint32_t kTaken = 0, kFree = ~std::uint32_t{0};
+
+  std::array<std::uint32_t, 3> neighbours;
+  std::uint32_t least;  ///< key that the face went into the queue with so far; kTaken once it is in a chart
+};
+
 class Grower {
  public:
-  Grower(const IndexedMesh& mesh, const Neighbours& neighbours, const Regions& regions)
+  Grower(const IndexedMesh& mesh, const Neighbours& neighbours, const Regions& regions, unsigned threads)
       : mesh_(mesh),
-        neighbours_(neighbours),
         regions_(regions),
+        threads_(threads),
         seeds_(spread_seeds(regions)),
-        weights_(seeds_.size(), kFirstWeight) {}
+        weights_(seeds_.size(), kFirstWeight),
+        cells_(mesh.faces.size()) {
+    for (std::size_t f = 0; f < cells_.size(); ++f)
+      std::copy_n(neighbours.begin() + static_cast<std::ptrdiff_t>(3 * f), 3, cells_[f].neighbours.begin());
+  }
 
   void grow() {
     partition_.chart_of_face.assign(mesh_.faces.size(), kNone);
     partition_.sizes.assign(seeds_.size(), 0);
-    std::vector<std::uint64_t> best(mesh_.faces.size(), ~std::uint64_t{0});
+    for (Cell& cell : cells_) cell.least = Cell::kFree;
     BucketQueue queue;
     for (std::uint32_t c = 0; c < seeds_.size(); ++c) queue.push(0, {seeds_[c], c});
-    while (!queue.empty()) {
-      std::uint64_t key = 0;
-      const auto [face, chart] = queue.pop(key);
-      if (partition_.chart_of_face[face] != kNone) continue;
-      partition_.chart_of_face[face] = chart;
-      ++partition_.sizes[chart];
-      const std::uint64_t next_key = key + weights_[chart] / 256;
-      for (std::size_t e = 3 * std::size_t{face}; e < 3 * std::size_t{face} + 3; ++e) {
-        const std::uint32_t g = neighbours_[e];
-        if (g == kNone || partition_.chart_of_face[g] != kNone || next_key >= best[g]) continue;
-        best[g] = next_key;
-        queue.push(next_key, {g, chart});
+    for (std::vector<BucketQueue::Entry> wanted; !queue.empty();) {
+      const std::uint64_t key = queue.pop_all(wanted);
+      for (; !wanted.empty(); wanted.pop_back()) {
+        prefetch(wanted);
+        const BucketQueue::Entry entry = wanted.back();
+        if (cells_[entry.face].least == Cell::kTaken) continue;
+        take(entry);
+        // Along a strip of 89 million faces keys become too large to be told apart by `least`.
+        const std::uint64_t next_key = key + weights_[entry.chart] / 256;
+        const auto least = static_cast<std::uint32_t>(std::min<std::uint64_t>(next_key, Cell::kFree - 1));
+        for (const std::uint32_t g : cells_[entry.face].neighbours) {
+          if (g == kNone || least >= cells_[g].least) continue;
+          cells_[g].least = least;
+          queue.push(next_key, {g, entry.chart});
+        }
       }
     }
   }
 
   void move_seeds() {
-    struct Mean {
-      std::array<std::int64_t, 3> sum{};
-      Wide nearest = ~Wide{0};
-    };
-    std::vector<Mean> means(seeds_.size());
-    for (std::uint32_t f = 0; f < mesh_.faces.size(); ++f) {
-      if (partition_.chart_of_face[f] == kNone) continue;
-      const auto sum = corner_sum(mesh_, f);
-      for (std::size_t a = 0; a < 3; ++a) means[partition_.chart_of_face[f]].sum[a] += sum[a];
-    }
-    for (std::uint32_t f = 0; f < mesh_.faces.size(); ++f) {
-      const std::uint32_t chart = partition_.chart_of_face[f];
-      if (chart == kNone) continue;
-      const auto sum = corner_sum(mesh_, f);
-      Wide distance = 0;
-      for (std::size_t a = 0; a < 3; ++a) {
-        const std::int64_t d = partition_.sizes[chart] * sum[a] - means[chart].sum[a];
-        const auto magnitude = static_cast<Wide>(d < 0 ? -d : d);
-        distance += magnitude * magnitude;
+    const std::vector<Sum> sums = sums_of_charts();
+    std::vector<Nearest> nearest(seeds_.size());
+    std::mutex mutex;
+    parallel_ranges(mesh_.faces.size(), threads_, [&](std::size_t begin, std::size_t end) {
+      std::vector<Nearest> found(seeds_.size());
+      for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f) {
+        const std::uint32_t chart = partition_.chart_of_face[f];
+        if (chart != kNone) found[chart] = std::min(found[chart], {distance(f, chart, sums[chart]), f});
       }
-      if (distance >= means[chart].nearest) continue;
-      means[chart].nearest = distance;
-      seeds_[chart] = f;
-    }
+      const std::lock_guard lock(mutex);
+      for (std::size_t c = 0; c < found.size(); ++c) nearest[c] = std::min(nearest[c], found[c]);
+    });
+    for (std::size_t c = 0; c < seeds_.size(); ++c) seeds_[c] = nearest[c].face;
   }
 
   void balance() {
@@ -86,10 +92,65 @@ class Grower {
   Partition take() { return std::move(partition_); }
 
  private:
+  using Sum = std::array<std::int64_t, 3>;
+  /// Ties to the lower face.
+  struct Nearest {
+    Wide distance = ~Wide{0};
+    std::uint32_t face = kNone;
+    friend bool operator<(const Nearest& a, const Nearest& b) {
+      return a.distance != b.distance ? a.distance < b.distance : a.face < b.face;
+    }
+  };
+
+  [[nodiscard]] std::vector<Sum> sums_of_charts() const {
+    std::vector<Sum> sums(seeds_.size(), Sum{});
+    std::mutex mutex;
+    const auto add = [](Sum& to, const Sum& sum) {
+      for (std::size_t a = 0; a < 3; ++a) to[a] += sum[a];
+    };
+    parallel_ranges(mesh_.faces.size(), threads_, [&](std::size_t begin, std::size_t end) {
+      std::vector<Sum> found(seeds_.size(), Sum{});
+      for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f)
+        if (partition_.chart_of_face[f] != kNone) add(found[partition_.chart_of_face[f]], corner_sum(mesh_, f));
+      const std::lock_guard lock(mutex);
+      for (std::size_t c = 0; c < found.size(); ++c) add(sums[c], found[c]);
+    });
+    return sums;
+  }
+
+  /// From a face's middle to that of its chart, squared, as far as it tells the chart's faces apart.
+  [[nodiscard]] Wide distance(std::uint32_t face, std::uint32_t chart, const Sum& sum_of_chart) const {
+    const Sum sum = corner_sum(mesh_, face);
+    Wide distance = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::int64_t d = partition_.sizes[chart] * sum[a] - sum_of_chart[a];
+      const auto magnitude = static_cast<Wide>(d < 0 ? -d : d);
+      distance += magnitude * magnitude;
+    }
+    return distance;
+  }
+
+  void take(BucketQueue::Entry wanted) {
+    cells_[wanted.face].least = Cell::kTaken;
+    partition_.chart_of_face[wanted.face] = wanted.chart;
+    ++partition_.sizes[wanted.chart];
+  }
+
+  /// Growth is all misses of the cache, as fronts of many charts take turns; but what comes next is known.
+  void prefetch(const std::vector<BucketQueue::Entry>& wanted) const {
+    constexpr std::size_t kFar = 16, kNear = 8;
+    const auto cell = [&](std::size_t ahead) { return &cells_[wanted[wanted.size() - 1 - ahead].face]; };
+    if (wanted.size() > kFar) __builtin_prefetch(cell(kFar));
+    if (wanted.size() <= kNear || cell(kNear)->least == Cell::kTaken) return;
+    for (const std::uint32_t g : cell(kNear)->neighbours)
+      if (g != kNone) __builtin_prefetch(&cells_[g]);
+  }
+
   const IndexedMesh& mesh_;
-  const Neighbours& neighbours_;
   const Regions& regions_;
+  unsigned threads_;
   std::vector<std::uint32_t> seeds_, weights_;
+  std::vector<Cell> cells_;
   Partition partition_;
 };
 
@@ -109,11 +170,11 @@ std::vector<std::uint32_t> spread_seeds(const Regions& regions) {
 }
 
 Partition grow_charts(const IndexedMesh& mesh, const Neighbours& neighbours, const Regions& regions, int iterations,
-                      const Progress& progress) {
-  Grower grower(mesh, neighbours, regions);
+                      const Progress& progress, unsigned threads) {
+  Grower grower(mesh, neighbours, regions, threads);
   grower.grow();
-  for (int i = 0; i < iterations; ++i) {
-    if (progress) progress(static_cast<double>(i + 1) / (iterations + 1));
+  for (int i = 1; i <= iterations; ++i) {
+    if (progress) progress(static_cast<double>(i) / (iterations + 1));
     grower.move_seeds();
     grower.balance();
     grower.grow();

@@ -13,7 +13,7 @@ namespace ramcdb::chartify {
 /// REQUIRES: no adjacency between faces of different regions.
 /// \param iterations of moving the seeds and growing again
 [[nodiscard]] Partition grow_charts(const IndexedMesh& mesh, const Neighbours& neighbours, const Regions& regions,
-                                    int iterations, const Progress& progress);
+                                    int iterations, const Progress& progress, unsigned threads = 1);
 
 /// Runs of equal length along the faces of each region, the middle of each run: with faces along a Hilbert curve, seeds
 /// that are spread evenly.

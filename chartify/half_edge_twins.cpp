@@ -1,6 +1,7 @@
 #include "chartify/half_edge_twins.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <span>
 
@@ -20,15 +21,42 @@ Ends ends_of(const IndexedMesh& mesh, HalfEdge h) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-/// Stable counting sort of `order` by a key below `keys`.
-template <class Key>
-std::vector<HalfEdge> sort_by(const std::vector<HalfEdge>& order, std::size_t keys, Key&& key) {
-  std::vector<std::uint32_t> at(keys + 1, 0);
-  for (const HalfEdge h : order) ++at[key(h) + 1];
-  std::partial_sum(at.begin(), at.end(), at.begin());
-  std::vector<HalfEdge> sorted(order.size());
-  for (const HalfEdge h : order) sorted[at[key(h)]++] = h;
-  return sorted;
+/// A half-edge among those at its lower end, in one number: the higher end, then the half-edge.
+using Spoke = std::uint64_t;
+std::uint32_t high_of(Spoke spoke) { return static_cast<std::uint32_t>(spoke >> 32); }
+HalfEdge half_edge_of(Spoke spoke) { return static_cast<HalfEdge>(spoke); }
+
+template <class Visit>
+void for_each_spoke(const IndexedMesh& mesh, Visit&& visit) {
+  HalfEdge h = 0;
+  for (const Triangle& t : mesh.faces)
+    for (std::size_t i = 0; i < 3; ++i, ++h) {
+      const std::uint32_t a = t[i], b = t[i == 2 ? 0 : i + 1];
+      visit(std::min(a, b), Spoke{std::max(a, b)} << 32 | h);
+    }
+}
+
+/// Half-edges by their lower ends. \param ends per vertex gets where its spokes end
+std::vector<Spoke> spokes_by_vertex(const IndexedMesh& mesh, std::vector<std::uint32_t>& ends) {
+  ends.assign(mesh.positions.size() + 1, 0);
+  for_each_spoke(mesh, [&](std::uint32_t low, Spoke) { ++ends[low + 1]; });
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<Spoke> spokes(3 * mesh.faces.size());
+  for_each_spoke(mesh, [&](std::uint32_t low, Spoke spoke) { spokes[ends[low]++] = spoke; });
+  return spokes;
+}
+
+/// Most vertices have so few spokes that counting the smaller ones, which needs no branches, is the quickest way.
+void sort_spokes(std::span<Spoke> spokes) {
+  constexpr std::size_t kFew = 16;
+  if (spokes.size() > kFew) return std::sort(spokes.begin(), spokes.end());
+  std::array<Spoke, kFew> sorted;
+  for (const Spoke spoke : spokes) {
+    std::size_t smaller = 0;
+    for (const Spoke other : spokes) smaller += other < spoke;
+    sorted[smaller] = spoke;
+  }
+  std::copy_n(sorted.begin(), spokes.size(), spokes.begin());
 }
 
 bool names_a_vertex_twice(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
@@ -49,20 +77,23 @@ void join_polygons(const IndexedMesh& mesh, std::span<const HalfEdge> at_edge, s
 }  // namespace
 
 EdgeGroups group_half_edges(const IndexedMesh& mesh) {
+  std::vector<std::uint32_t> ends;
+  std::vector<Spoke> spokes = spokes_by_vertex(mesh, ends);
   EdgeGroups groups;
-  const std::size_t count = 3 * mesh.faces.size(), vertices = mesh.positions.size();
-  std::vector<HalfEdge> order(count);
-  std::iota(order.begin(), order.end(), 0U);
-  order = sort_by(order, vertices, [&](HalfEdge h) { return ends_of(mesh, h).high; });
-  groups.half_edges = sort_by(order, vertices, [&](HalfEdge h) { return ends_of(mesh, h).low; });
-  groups.edge_of.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const HalfEdge h = groups.half_edges[i];
-    if (i == 0 || !(ends_of(mesh, h) == ends_of(mesh, groups.half_edges[i - 1])))
-      groups.first.push_back(static_cast<std::uint32_t>(i));
-    groups.edge_of[h] = static_cast<std::uint32_t>(groups.first.size() - 1);
+  groups.half_edges.resize(spokes.size());
+  groups.edge_of.resize(spokes.size());
+  groups.first.reserve(spokes.size() / 2 + mesh.positions.size() / 16);
+  std::uint32_t i = 0;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    sort_spokes(std::span(spokes).subspan(i, ends[v] - i));
+    for (std::uint32_t before = kNone; i < ends[v]; ++i) {
+      if (high_of(spokes[i]) != before) groups.first.push_back(i);
+      before = high_of(spokes[i]);
+      groups.half_edges[i] = half_edge_of(spokes[i]);
+      groups.edge_of[half_edge_of(spokes[i])] = static_cast<std::uint32_t>(groups.first.size() - 1);
+    }
   }
-  groups.first.push_back(static_cast<std::uint32_t>(count));
+  groups.first.push_back(i);
   return groups;
 }
 

@@ -36,4 +36,12 @@ struct EdgeGroups {
 /// others.
 [[nodiscard]] std::vector<HalfEdge> find_twins(const IndexedMesh& mesh, const EdgeGroups& edges);
 
+/// What meets at the edges of a mesh: all who cut it or look at it ask.
+struct Adjacency {
+  EdgeGroups edges;
+  std::vector<HalfEdge> twins;
+
+  explicit Adjacency(const IndexedMesh& mesh) : edges(group_half_edges(mesh)), twins(find_twins(mesh, edges)) {}
+};
+
 }  // namespace ramcdb::chartify

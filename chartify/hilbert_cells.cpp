@@ -17,13 +17,6 @@ LatticeBox box_of(const IndexedMesh& mesh) {
 
 }  // namespace
 
-std::array<std::int64_t, 3> corner_sum(const IndexedMesh& mesh, std::uint32_t face) {
-  std::array<std::int64_t, 3> sum{};
-  for (const std::uint32_t v : mesh.faces[face])
-    for (std::size_t a = 0; a < 3; ++a) sum[a] += mesh.positions[v][static_cast<int>(a)];
-  return sum;
-}
-
 HilbertCurve::HilbertCurve(const LatticeBox& box) {
   if (box.empty()) return;
   std::int64_t extent = 1;

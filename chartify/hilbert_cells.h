@@ -8,7 +8,16 @@
 namespace ramcdb::chartify {
 
 /// Three times the centroid of a face, exactly.
-[[nodiscard]] std::array<std::int64_t, 3> corner_sum(const IndexedMesh& mesh, std::uint32_t face);
+[[nodiscard]] inline std::array<std::int64_t, 3> corner_sum(const IndexedMesh& mesh, std::uint32_t face) {
+  std::array<std::int64_t, 3> sum{};
+  for (const std::uint32_t v : mesh.faces[face]) {
+    const LatticePoint p = mesh.positions[v];
+    sum[0] += p.x;
+    sum[1] += p.y;
+    sum[2] += p.z;
+  }
+  return sum;
+}
 
 /// A Hilbert curve through a box of lattice points: cubes, 2^16 a side.
 class HilbertCurve {

@@ -233,9 +233,10 @@ class Recharter {
     const SizeLimits limits(cut_.target);
     FaceMover mover(ordered_.twins, limits, cut_.partition, &rules);
     rebalance(mover, limits, static_cast<std::uint32_t>(cut_.partition.sizes.size()));
+    const BorderStraightener straightener(ordered_.mesh, ordered_.twins);
     for (int round = 0; round < kBorderRounds; ++round) {
       move_faces(mover);
-      straighten_borders(ordered_.mesh, ordered_.twins, limits, cut_.partition, &rules);
+      straightener.run(limits, cut_.partition, &rules);
     }
     merge_pieces(cut_.neighbours, cut_.partition);
   }

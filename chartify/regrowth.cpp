@@ -18,17 +18,20 @@ class Regrowth {
   void run() {
     for (std::uint32_t f = 0; f < best_.size(); ++f)
       if (partition_.chart_of_face[f] != kNone) offer(f, 0);
-    while (!queue_.empty()) {
-      std::uint64_t key = 0;
-      const auto [face, chart] = queue_.pop(key);
-      if (partition_.chart_of_face[face] != kNone) continue;
-      partition_.chart_of_face[face] = chart;
-      ++partition_.sizes[chart];
-      offer(face, key);
+    for (std::vector<BucketQueue::Entry> wanted; !queue_.empty();) {
+      const std::uint64_t key = queue_.pop_all(wanted);
+      for (; !wanted.empty(); wanted.pop_back()) take(wanted.back(), key);
     }
   }
 
  private:
+  void take(BucketQueue::Entry wanted, std::uint64_t key) {
+    if (partition_.chart_of_face[wanted.face] != kNone) return;
+    partition_.chart_of_face[wanted.face] = wanted.chart;
+    ++partition_.sizes[wanted.chart];
+    offer(wanted.face, key);
+  }
+
   /// Puts the free faces around a face of a chart into the queue.
   void offer(std::uint32_t face, std::uint64_t key) {
     const std::uint32_t chart = partition_.chart_of_face[face];

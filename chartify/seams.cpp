@@ -164,7 +164,7 @@ SharedEnds find_shared_ends(const MeshPart& part, std::span<const NumberedEdge> 
     touched.push_back(v);
     ends.corners.push_back(number);
   }
-  const CutSurface surface(part.mesh, part.charts.chart_of_face, fixed, touched);
+  const CutSurface surface(part.mesh, Adjacency(part.mesh), part.charts.chart_of_face, fixed, touched);
   for (HalfEdge h = 0; h < 3 * part.mesh.faces.size(); ++h) {
     if (!surface.is_border(h)) continue;
     const std::uint32_t u = surface.start_of(h), v = surface.end_of(h);

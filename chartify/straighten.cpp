@@ -1,11 +1,13 @@
 #include "chartify/straighten.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <queue>
 #include <utility>
 
-#include "chartify/border_paths.h"
+#include "chartify/turns.h"
+#include "chartify/vertex_table.h"
 
 namespace ramcdb::chartify {
 namespace {
@@ -14,47 +16,75 @@ constexpr std::uint32_t kBandWidth = 8;     // edges on either side of a border
 constexpr std::uint32_t kCostPerEdge = 64;  // plus as much for an edge of mean length
 
 double edge_length(const IndexedMesh& mesh, std::uint32_t u, std::uint32_t v) {
-  double sum = 0;
-  for (int a = 0; a < 3; ++a) {
-    const double d = static_cast<double>(mesh.positions[u][a]) - static_cast<double>(mesh.positions[v][a]);
-    sum += d * d;
-  }
-  return std::sqrt(sum);
+  const LatticePoint p = mesh.positions[u], q = mesh.positions[v];
+  const auto square = [](double d) { return d * d; };
+  return std::sqrt(square(p.x - q.x) + square(p.y - q.y) + square(p.z - q.z));
 }
 
+/// A border that runs from corner to corner, and the charts beside it.
+struct BorderBetween {
+  BorderPath path;
+  std::uint32_t left, right;
+};
+
+std::vector<BorderBetween> between_charts(std::vector<BorderPath> paths, const std::vector<HalfEdge>& twins,
+                                          const std::vector<std::uint32_t>& chart_of_face) {
+  std::vector<BorderBetween> borders;
+  for (BorderPath& path : paths) {
+    const HalfEdge first = path.front();
+    borders.push_back({std::move(path), chart_of_face[face_of(first)], chart_of_face[face_of(twins[first])]});
+  }
+  return borders;
+}
+
+/// Straightens one border after the other. Several may work at a time on borders without a common chart.
 class Straightener {
  public:
-  Straightener(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const SizeLimits& limits,
-               Partition& partition, const MoveRules* rules)
+  Straightener(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const ClosedFans& fans, double mean_length,
+               const SizeLimits& limits, Partition& partition, const MoveRules* rules)
       : mesh_(mesh),
         twins_(twins),
+        fans_(fans),
+        mean_length_(mean_length),
         limits_(limits),
         partition_(partition),
-        rules_(rules),
-        fans_(mesh, twins),
-        vertex_(mesh.positions.size()),
-        on_path_(twins.size(), 0) {
-    double sum = 0;
-    for (HalfEdge h = 0; h < twins_.size(); ++h) sum += edge_length(mesh_, start_of(h), end_of(h));
-    mean_length_ = twins_.empty() ? 1 : sum / static_cast<double>(twins_.size());
-  }
+        rules_(rules) {}
 
-  void run() {
-    for (const BorderPath& path : trace_borders(mesh_, twins_, fans_, partition_.chart_of_face)) straighten(path);
+  void straighten(const BorderBetween& border) {
+    const BorderPath& path = border.path;
+    left_ = border.left;
+    right_ = border.right;
+    begin_ = start_of(path.front());
+    end_ = end_of(path.back());
+    if (begin_ == end_) return;
+    // Straightening another border may have changed the sides of this one.
+    if (chart_left(path.front()) != left_ || chart_left(twins_[path.front()]) != right_) return;
+    if (std::ranges::none_of(path, [&](HalfEdge h) { return may_move(h) || may_move(twins_[h]); })) return;
+    vertices_.clear();
+    mark_band(path);
+    std::uint32_t cost = 0;
+    for (const HalfEdge h : path) cost += cost_of(h);
+    const BorderPath better = cheapest_path(path, cost);
+    if (!better.empty()) replace(better);
   }
 
  private:
   struct VertexState {
-    std::uint32_t band = 0;     ///< number of the border in whose band the vertex was last
-    std::uint32_t outside = 0;  ///< number of the border whose charts the vertex was last found not to be inside of
-    std::uint32_t reached = 0;  ///< number of the border for which `cost` and `arriving` hold
+    enum : std::uint8_t { unknown, in_band, outside } place = unknown;
+    bool reached = false;
     std::uint32_t cost = 0;
     HalfEdge arriving = kNoTwin;
   };
 
   [[nodiscard]] std::uint32_t start_of(HalfEdge h) const { return mesh_.faces[face_of(h)][h % 3]; }
   [[nodiscard]] std::uint32_t end_of(HalfEdge h) const { return start_of(next_in_face(h)); }
-  [[nodiscard]] std::uint32_t chart_left(HalfEdge h) const { return partition_.chart_of_face[face_of(h)]; }
+  /// Others may be changing faces of other charts meanwhile.
+  [[nodiscard]] std::atomic_ref<std::uint32_t> chart_of(std::uint32_t face) const {
+    return std::atomic_ref(partition_.chart_of_face[face]);
+  }
+  [[nodiscard]] std::uint32_t chart_left(HalfEdge h) const {
+    return chart_of(face_of(h)).load(std::memory_order_relaxed);
+  }
 
   [[nodiscard]] std::uint32_t cost_of(HalfEdge h) const {
     const double length = edge_length(mesh_, start_of(h), end_of(h));
@@ -68,26 +98,11 @@ class Straightener {
   /// Whether the face that a border half-edge is of may change sides.
   [[nodiscard]] bool may_move(HalfEdge h) const { return may_change(face_of(h), chart_left(twins_[h])); }
 
-  void straighten(const BorderPath& path) {
-    ++number_;
-    left_ = chart_left(path.front());
-    right_ = chart_left(twins_[path.front()]);
-    begin_ = start_of(path.front());
-    end_ = end_of(path.back());
-    if (begin_ == end_ || left_ == right_) return;  // straightening another border may have merged the two sides
-    if (std::ranges::none_of(path, [&](HalfEdge h) { return may_move(h) || may_move(twins_[h]); })) return;
-    mark_band(path);
-    std::uint32_t cost = 0;
-    for (const HalfEdge h : path) cost += cost_of(h);
-    const BorderPath better = cheapest_path(path, cost);
-    if (!better.empty()) replace(better);
-  }
-
   /// The vertices of the border and those around it inside the two charts.
   void mark_band(const BorderPath& path) {
     std::vector<std::uint32_t> ring, next;
     for (std::size_t i = 1; i < path.size(); ++i) {
-      vertex_[start_of(path[i])].band = number_;
+      vertices_[start_of(path[i])].place = VertexState::in_band;
       ring.push_back(start_of(path[i]));
     }
     for (std::uint32_t width = 0; width < kBandWidth; ++width, ring.swap(next)) {
@@ -95,14 +110,10 @@ class Straightener {
       for (const std::uint32_t v : ring)
         for_each_leaving(v, [&](HalfEdge h) {
           const std::uint32_t u = end_of(h);
-          VertexState& state = vertex_[u];
-          if (state.band == number_ || state.outside == number_) return;
-          if (is_inside(u)) {
-            state.band = number_;
-            next.push_back(u);
-          } else {
-            state.outside = number_;
-          }
+          VertexState& state = vertices_[u];
+          if (state.place != VertexState::unknown) return;
+          state.place = is_inside(u) ? VertexState::in_band : VertexState::outside;
+          if (state.place == VertexState::in_band) next.push_back(u);
         });
     }
   }
@@ -152,7 +163,7 @@ class Straightener {
     while (!queue_.empty()) {
       const auto [cost, v] = queue_.top();
       queue_.pop();
-      if (cost != vertex_[v].cost) continue;
+      if (cost != vertices_[v].cost) continue;
       if (v == end_) return path_to_end();
       for_each_leaving(v, [&](HalfEdge h) { reach(h, cost, most, arriving_at_end); });
     }
@@ -164,26 +175,29 @@ class Straightener {
     const std::uint32_t u = end_of(h), cost = cost_before + cost_of(h);
     const bool ends =
         u == end_ && std::find(arriving_at_end.begin(), arriving_at_end.end(), h) != arriving_at_end.end();
-    if (cost >= most || (!ends && (u == end_ || u == begin_ || vertex_[u].band != number_))) return;
-    VertexState& state = vertex_[u];
-    const bool tie = state.reached == number_ && cost == state.cost && start_of(h) < start_of(state.arriving);
-    if (state.reached == number_ && cost >= state.cost && !tie) return;
+    if (cost >= most || (!ends && (u == end_ || u == begin_))) return;
+    VertexState& state = vertices_[u];
+    if (!ends && state.place != VertexState::in_band) return;
+    const bool tie = state.reached && cost == state.cost && start_of(h) < start_of(state.arriving);
+    if (state.reached && cost >= state.cost && !tie) return;
     if (!tie) queue_.push({cost, u});
-    state.reached = number_;
+    state.reached = true;
     state.cost = cost;
     state.arriving = h;
   }
 
   [[nodiscard]] BorderPath path_to_end() const {
     BorderPath path;
-    for (std::uint32_t v = end_; v != begin_; v = start_of(path.back())) path.push_back(vertex_[v].arriving);
+    for (std::uint32_t v = end_; v != begin_; v = start_of(path.back())) path.push_back(vertices_.find(v)->arriving);
     std::reverse(path.begin(), path.end());
     return path;
   }
 
   /// Gives the faces right of the new path to the right chart, those left of it to the left one, unless sizes forbid.
   void replace(const BorderPath& path) {
-    for (const HalfEdge h : path) on_path_[h] = on_path_[twins_[h]] = number_;
+    on_path_.clear();
+    for (const HalfEdge h : path) on_path_.insert(on_path_.end(), {h, twins_[h]});
+    std::ranges::sort(on_path_);
     changed_.clear();
     bool fits = true;
     for (const HalfEdge h : path) {
@@ -194,7 +208,7 @@ class Straightener {
   }
 
   [[nodiscard]] bool flood(std::uint32_t seed, std::uint32_t from, std::uint32_t to) {
-    if (partition_.chart_of_face[seed] != from) return true;
+    if (chart_left(3 * seed) != from) return true;
     if (!may_change(seed, to)) return false;
     open_.assign(1, seed);
     change(seed, from, to);
@@ -202,7 +216,7 @@ class Straightener {
       const std::uint32_t f = open_.back();
       open_.pop_back();
       for (HalfEdge h = 3 * f; h < 3 * f + 3; ++h) {
-        if (twins_[h] == kNoTwin || on_path_[h] == number_ || chart_left(twins_[h]) != from) continue;
+        if (twins_[h] == kNoTwin || chart_left(twins_[h]) != from || std::ranges::binary_search(on_path_, h)) continue;
         if (changed_.size() >= limits_.target || !may_change(face_of(twins_[h]), to)) return false;
         change(face_of(twins_[h]), from, to);
         open_.push_back(face_of(twins_[h]));
@@ -212,7 +226,7 @@ class Straightener {
   }
 
   void change(std::uint32_t face, std::uint32_t from, std::uint32_t to) {
-    partition_.chart_of_face[face] = to;
+    chart_of(face).store(to, std::memory_order_relaxed);
     --partition_.sizes[from];
     ++partition_.sizes[to];
     changed_.push_back(face);
@@ -232,23 +246,23 @@ class Straightener {
   void undo() {
     grown_left_ = 0;
     for (auto it = changed_.rbegin(); it != changed_.rend(); ++it) {
-      std::uint32_t& chart = partition_.chart_of_face[*it];
-      --partition_.sizes[chart];
-      chart = chart == left_ ? right_ : left_;
-      ++partition_.sizes[chart];
+      const std::uint32_t was = chart_left(3 * *it), is = was == left_ ? right_ : left_;
+      --partition_.sizes[was];
+      ++partition_.sizes[is];
+      chart_of(*it).store(is, std::memory_order_relaxed);
     }
   }
 
   const IndexedMesh& mesh_;
   const std::vector<HalfEdge>& twins_;
+  const ClosedFans& fans_;
+  double mean_length_;
   const SizeLimits& limits_;
   Partition& partition_;
   const MoveRules* rules_;
-  ClosedFans fans_;
-  double mean_length_ = 1;
-  std::uint32_t number_ = 0, left_ = 0, right_ = 0, begin_ = 0, end_ = 0;
-  std::vector<VertexState> vertex_;
-  std::vector<std::uint32_t> on_path_;  ///< number of the border whose new path runs along the half-edge
+  std::uint32_t left_ = 0, right_ = 0, begin_ = 0, end_ = 0;
+  VertexTable<VertexState> vertices_;
+  std::vector<HalfEdge> on_path_;  ///< the new path both ways, ascending
   using Entry = std::pair<std::uint32_t, std::uint32_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
   std::vector<std::uint32_t> open_, changed_;
@@ -257,9 +271,23 @@ class Straightener {
 
 }  // namespace
 
-void straighten_borders(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const SizeLimits& limits,
-                        Partition& partition, const MoveRules* rules) {
-  Straightener(mesh, twins, limits, partition, rules).run();
+BorderStraightener::BorderStraightener(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins)
+    : mesh_(mesh), twins_(twins), fans_(mesh, twins) {
+  if (twins.empty()) return;
+  double sum = 0;
+  for (const Triangle& t : mesh.faces)
+    for (std::size_t i = 0; i < 3; ++i) sum += edge_length(mesh, t[i], t[i == 2 ? 0 : i + 1]);
+  mean_length_ = sum / static_cast<double>(twins.size());
+}
+
+void BorderStraightener::run(const SizeLimits& limits, Partition& partition, const MoveRules* rules,
+                             unsigned threads) const {
+  std::vector<Straightener> workers(std::max(threads, 1U),
+                                    {mesh_, twins_, fans_, mean_length_, limits, partition, rules});
+  const std::vector<std::uint32_t>& chart_of_face = partition.chart_of_face;
+  work_in_turns(between_charts(trace_borders(mesh_, twins_, fans_, chart_of_face), twins_, chart_of_face),
+                partition.sizes.size(), workers,
+                [](Straightener& worker, const BorderBetween& border) { worker.straighten(border); });
 }
 
 }  // namespace ramcdb::chartify

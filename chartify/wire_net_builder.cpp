@@ -1,8 +1,11 @@
 #include "chartify/wire_net_builder.h"
 
 #include <algorithm>
+#include <ranges>
+#include <utility>
 
 #include "chartify/cut_surface.h"
+#include "chartify/parallel.h"
 #include "chartify/partition.h"
 
 namespace ramcdb::chartify {
@@ -19,14 +22,11 @@ class CornerFinder {
   }
 
   std::vector<std::uint8_t> run() {
-    const auto half_edges = static_cast<HalfEdge>(3 * mesh_.faces.size());
-    for (HalfEdge h = 0; h < half_edges; ++h)
-      if (surface_.is_border(h)) add_edge(h);
-    for (HalfEdge h = 0; h < half_edges; ++h)
-      if (surface_.is_border(h)) check_pass(h);
+    for (const HalfEdge h : surface_.borders()) add_edge(h);
+    for (const HalfEdge h : surface_.borders()) check_pass(h);
     for (std::size_t v = 0; v < corner_.size(); ++v)
       if (edges_at_[v].first != kNone && !goes_on(edges_at_[v])) corner_[v] = 1;
-    close_rings(half_edges);
+    close_rings();
     return std::move(corner_);
   }
 
@@ -63,14 +63,14 @@ class CornerFinder {
   }
 
   /// A ring of cut edges without a corner gets one at its smallest position.
-  void close_rings(HalfEdge half_edges) {
-    std::vector<std::uint8_t> seen(half_edges, 0);
-    for (HalfEdge h = 0; h < half_edges; ++h) {
-      if (!surface_.is_border(h) || seen[h]) continue;
+  void close_rings() {
+    std::vector<bool> seen(3 * mesh_.faces.size(), false);
+    for (const HalfEdge h : surface_.borders()) {
+      if (seen[h]) continue;
       bool has_corner = false;
       std::uint32_t smallest = surface_.start_of(h);
       for (HalfEdge g = h; !seen[g]; g = surface_.next_on_border(g)) {
-        seen[g] = 1;
+        seen[g] = true;
         const std::uint32_t v = surface_.start_of(g);
         has_corner = has_corner || corner_[v];
         if (std::pair(mesh_.positions[v], v) < std::pair(mesh_.positions[smallest], smallest)) smallest = v;
@@ -87,45 +87,50 @@ class CornerFinder {
 
 class Builder {
  public:
-  Builder(const IndexedMesh& mesh, const Charts& charts, std::span<const FixedWire> fixed,
-          std::span<const std::uint32_t> corners)
+  Builder(const IndexedMesh& mesh, Adjacency adjacency, const Charts& charts, std::span<const FixedWire> fixed,
+          std::span<const std::uint32_t> corners, unsigned threads)
       : mesh_(mesh),
         charts_(charts),
         fixed_(fixed),
-        surface_(mesh, charts.chart_of_face, fixed, corners),
+        threads_(threads),
+        surface_(mesh, std::move(adjacency), charts.chart_of_face, fixed, corners),
         is_corner_(CornerFinder(mesh, surface_, fixed, corners).run()),
         wire_of_edge_(surface_.edge_count(), kNone),
         corner_of_(mesh.positions.size(), kNone),
         local_of_fan_(surface_.fan_count(), kNone),
-        on_loop_(3 * mesh.faces.size(), 0) {}
+        on_loop_(3 * mesh.faces.size(), false) {}
 
   WireNet run() {
     net_.charts.resize(charts_.chart_count);
-    const std::vector<std::vector<std::uint32_t>> faces = faces_by_chart();
-    for (std::uint32_t c = 0; c < charts_.chart_count; ++c) build_chart(c, faces[c]);
+    const std::vector<std::vector<HalfEdge>> borders = by_chart(surface_.borders(), face_of);
+    for (std::uint32_t c = 0; c < charts_.chart_count; ++c)
+      for (const HalfEdge h : borders[c])
+        if (!on_loop_[h]) add_loop(net_.charts[c], c, canonical_start(h));
+    const auto faces = by_chart(std::views::iota(std::uint32_t{0}, static_cast<std::uint32_t>(mesh_.faces.size())),
+                                [](std::uint32_t f) { return f; });
+    parallel_for(charts_.chart_count, threads_, [&](std::size_t c) { fill(net_.charts[c], faces[c]); });
     add_isolated_vertices();
     return std::move(net_);
   }
 
  private:
-  [[nodiscard]] std::vector<std::vector<std::uint32_t>> faces_by_chart() const {
-    std::vector<std::vector<std::uint32_t>> faces(charts_.chart_count);
-    for (std::uint32_t f = 0; f < mesh_.faces.size(); ++f) faces[charts_.chart_of_face[f]].push_back(f);
-    return faces;
+  /// What belongs to the faces of each chart, in order.
+  template <class Face>
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> by_chart(const auto& all, Face&& face) const {
+    std::vector<std::vector<std::uint32_t>> parts(charts_.chart_count);
+    for (const std::uint32_t one : all) parts[charts_.chart_of_face[face(one)]].push_back(one);
+    return parts;
   }
 
-  void build_chart(std::uint32_t index, const std::vector<std::uint32_t>& faces) {
-    NetChart& chart = net_.charts[index];
-    for (const std::uint32_t f : faces)
-      for (HalfEdge h = 3 * f; h < 3 * f + 3; ++h)
-        if (surface_.is_border(h) && !on_loop_[h]) add_loop(chart, index, canonical_start(h));
+  /// Its faces and the vertices inside it. What is on loops is there already; nothing here is another chart's.
+  void fill(NetChart& chart, const std::vector<std::uint32_t>& faces) {
     chart.chart.faces.reserve(faces.size());
     for (const std::uint32_t f : faces) {
       Triangle t{};
       for (std::uint32_t i = 0; i < 3; ++i) t[i] = local_vertex(chart, 3 * f + i);
       chart.chart.faces.push_back(t);
-      chart.mesh_face.push_back(f);
     }
+    chart.mesh_face = faces;
   }
 
   /// The smallest half-edge of a loop that starts at a corner.
@@ -145,7 +150,7 @@ class Builder {
     do {
       pass_.clear();
       do {
-        on_loop_[h] = 1;
+        on_loop_[h] = true;
         pass_.push_back(h);
         (void)local_vertex(chart, h);
         h = surface_.next_on_border(h);
@@ -222,10 +227,11 @@ class Builder {
   const IndexedMesh& mesh_;
   const Charts& charts_;
   std::span<const FixedWire> fixed_;
+  unsigned threads_;
   CutSurface surface_;
   std::vector<std::uint8_t> is_corner_;
   std::vector<std::uint32_t> wire_of_edge_, corner_of_, local_of_fan_;
-  std::vector<std::uint8_t> on_loop_;
+  std::vector<bool> on_loop_;
   std::vector<HalfEdge> pass_;
   WireNet net_;
 };
@@ -234,7 +240,11 @@ class Builder {
 
 WireNet build_wire_net(const IndexedMesh& mesh, const Charts& charts, std::span<const FixedWire> fixed,
                        std::span<const std::uint32_t> corners) {
-  return Builder(mesh, charts, fixed, corners).run();
+  return Builder(mesh, Adjacency(mesh), charts, fixed, corners, 1).run();
+}
+
+WireNet build_wire_net(const IndexedMesh& mesh, Adjacency adjacency, const Charts& charts, unsigned threads) {
+  return Builder(mesh, std::move(adjacency), charts, {}, {}, threads).run();
 }
 
 }  // namespace ramcdb::chartify

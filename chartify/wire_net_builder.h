@@ -56,5 +56,8 @@ struct WireNet {
 [[nodiscard]] WireNet build_wire_net(const IndexedMesh& mesh, const Charts& charts,
                                      std::span<const FixedWire> fixed = {},
                                      std::span<const std::uint32_t> corners = {});
+/// Of a whole mesh, whose adjacency it uses up. \param threads change the time, never the result
+[[nodiscard]] WireNet build_wire_net(const IndexedMesh& mesh, Adjacency adjacency, const Charts& charts,
+                                     unsigned threads);
 
 }  // namespace ramcdb::chartify

@@ -104,7 +104,7 @@ TEST_P(StraightenOn, NeverMakesBordersLonger) {
       return std::set<std::uint32_t>(piece.begin(), piece.end());
     }();
     const SizeLimits limits(target);
-    straighten_borders(mesh, twins, limits, partition);
+    BorderStraightener(mesh, twins).run(limits, partition);
     const Borders after = borders_of(mesh, twins, partition.chart_of_face);
     EXPECT_LE(after.cost, before.cost);
     const auto piece = pieces(mesh, partition.chart_of_face);

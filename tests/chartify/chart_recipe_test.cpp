@@ -68,7 +68,7 @@ TEST(FaceMoves, ShortenBordersAndKeepChartsWhole) {
 TEST(Straighten, ShortensBordersAndKeepsChartsWhole) {
   Stage stage(ramcdb::test::scan(40'000), 1000);
   const std::size_t before = stage.border();
-  straighten_borders(stage.mesh, stage.twins, stage.limits, stage.partition);
+  BorderStraightener(stage.mesh, stage.twins).run(stage.limits, stage.partition);
   stage.expect_consistent();
   EXPECT_LT(stage.border(), before * 9 / 10);
 }
@@ -93,7 +93,7 @@ TEST(Straighten, MakesAZigzagStraight) {
     }
   const auto twins = find_twins(mesh, group_half_edges(mesh));
   ASSERT_GT(border_edges(twins, partition.chart_of_face), kSide);
-  straighten_borders(mesh, twins, SizeLimits(200), partition);
+  BorderStraightener(mesh, twins).run(SizeLimits(200), partition);
   EXPECT_EQ(border_edges(twins, partition.chart_of_face), kSide);
   EXPECT_EQ(partition.sizes, (std::vector<std::uint32_t>{144, 144}));
 }

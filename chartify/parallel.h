@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace ramcdb::detail {
+namespace ramcdb {
 
 /// Calls work(i) for i = 0 .. count - 1 on up to `threads` threads. `progress`, when given, gets the share that is
 /// done, on the calling thread. The first exception of any of them ends the rest and is thrown here.
@@ -43,4 +43,33 @@ inline void parallel_for(std::size_t count, unsigned threads, const std::functio
   if (failure) std::rethrow_exception(failure);
 }
 
-}  // namespace ramcdb::detail
+/// Calls work(begin, end) for ranges that together are 0 .. count - 1, on up to `threads` threads. They are the same
+/// for any number of threads.
+inline void parallel_ranges(std::size_t count, unsigned threads,
+                            const std::function<void(std::size_t begin, std::size_t end)>& work) {
+  constexpr std::size_t kRange = 1 << 16;
+  parallel_for((count + kRange - 1) / kRange, threads,
+               [&](std::size_t i) { work(i * kRange, std::min(count, (i + 1) * kRange)); });
+}
+
+/// Calls both, `aside` on a thread of its own if there may be two. The first exception of either is thrown.
+inline void run_beside(unsigned threads, const std::function<void()>& aside, const std::function<void()>& here) {
+  if (threads < 2) {
+    aside();
+    return here();
+  }
+  std::exception_ptr failure;
+  {
+    const std::jthread helper([&] {
+      try {
+        aside();
+      } catch (...) {
+        failure = std::current_exception();
+      }
+    });
+    here();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace ramcdb
