@@ -31,10 +31,11 @@ class ThreeWay {
 
   /// Neither changed anything at a vertex at which the other did.
   [[nodiscard]] bool disjoint() const { return !common(touched_, by_theirs_); }
-  /// Nor in a chart in which the other did. New components go to any chart of their region.
-  [[nodiscard]] bool apart(const ChartsOfVertices& charts) const {
-    return !adds_components(ours_) && !adds_components(theirs_) &&
-           !common(charts_of(touched_, charts), charts_of(by_theirs_, charts));
+  /// Nor in a chart in which the other did. New faces that share no edge with old ones go to any chart of their region.
+  /// \param by_theirs the charts that theirs changed
+  [[nodiscard]] bool apart(const ChartsOfVertices& charts, const std::set<ChartId>& by_theirs) const {
+    const std::set<ChartId> by_ours = charts_of(touched_, charts);
+    return !adds(ours_) && !common(by_ours, adds(theirs_) ? by_theirs : charts_of(by_theirs_, charts));
   }
   [[nodiscard]] std::optional<Model> merged() const { return PlainMerge(base_, ours_, theirs_).run(); }
   /// Who lies at a place in each of the three.
@@ -59,18 +60,8 @@ class ThreeWay {
   static bool common(const std::set<T>& a, const std::set<T>& b) {
     return std::ranges::any_of(a, [&](const T& x) { return b.contains(x); });
   }
-  /// Whether there are new vertices that have nothing to do with old ones, as far as a look at single faces tells.
-  [[nodiscard]] bool adds_components(const Model& side) const {
-    const auto known = base_.vertex_of_id();
-    const auto is_new = [&](std::uint32_t v) { return !known.contains(side.ids[v]); };
-    std::vector<bool> in_face(side.ids.size(), false);
-    for (const Triangle& t : side.faces) {
-      for (const std::uint32_t v : t) in_face[v] = true;
-      if (std::ranges::all_of(t, is_new)) return true;
-    }
-    for (std::uint32_t v = 0; v < side.ids.size(); ++v)
-      if (!in_face[v] && is_new(v)) return true;
-    return false;
+  [[nodiscard]] bool adds(const Model& side) const {
+    return side.faces.size() > base_.faces.size() || side.ids.size() > base_.ids.size();
   }
   static std::set<ChartId> charts_of(const std::set<std::uint64_t>& ids, const ChartsOfVertices& charts) {
     std::set<ChartId> all;

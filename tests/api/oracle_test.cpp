@@ -336,6 +336,12 @@ class Oracle {
 
   // Commits.
 
+  static std::vector<std::uint32_t> numbers_of(const std::vector<ChartId>& charts) {
+    std::vector<std::uint32_t> numbers;
+    for (const ChartId id : charts) numbers.push_back(id.value);
+    return numbers;
+  }
+
   /// Where several vertices lie at one place, a file without ids may seem to tear the region's border.
   bool is_refused(const Work& work) {
     if (!family_.weird || work.file.empty() || work.file.extension() == ".ply") return false;
@@ -366,7 +372,9 @@ class Oracle {
     CommitReport report = work.commit(committing);
     if (!report.conflicts.empty() && !committing.merge) {
       EXPECT_EQ(repository_.resolve(work.branch), tip) << what_;
-      EXPECT_FALSE(sides.apart(charts_at(work.base))) << what_ << ": edits of charts of their own met";
+      EXPECT_FALSE(sides.apart(charts_at(work.base), changed_since(work.base, tip)))
+          << what_ << ": edits of charts of their own met in "
+          << ::testing::PrintToString(numbers_of(report.conflicts));
       committing.merge = true;
       report = work.commit(committing);
     }
