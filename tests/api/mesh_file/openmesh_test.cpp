@@ -99,6 +99,9 @@ bool has_coloured_faces(const mesh_file::MeshData& mesh) {
 TEST(OtherReader, OpenMeshFindsTheSameInThemAndInOurs) {
   const auto folder = meshes_folder();
   if (!folder) GTEST_SKIP() << "real meshes: set RAMCDB_MESHES";
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "it takes minutes with sanitizers; RealMeshes reads the same files";
+#endif
   const TempFolder scratch;
   std::size_t same = 0;
   for (const auto& entry : fs::recursive_directory_iterator(*folder)) {
