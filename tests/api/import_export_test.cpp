@@ -86,8 +86,9 @@ TEST(Import, OfAnExportOnTheSameLatticeGivesTheSameBytes) {
   }
 }
 
+/// Against two threads, which share faces in pieces of 2^16.
 TEST(Import, DoesNotDependOnOrderOrThreads) {
-  const TestMesh mesh = scan(8000);
+  const TestMesh mesh = scan(140'000);
   TempRepository repository(mesh);
   write_test_mesh(shuffled(mesh, 7), repository / "shuffled.ply");
   ImportOptions options;

@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <sstream>
+
 #include "tests/cli/scene.h"
 
 /// The whole life of an edit, as a person types it.
@@ -86,6 +88,19 @@ TEST_F(EditLoop, EditedVertexComesBackInTheNextVersion) {
   const auto moved = only_object(run_ramcdb({"diff", repo_, "HEAD~1", "HEAD", "--json"}).out);
   EXPECT_NEAR(moved["max_displacement"].get<double>(), 0.05, step);
   expect_done(run_ramcdb({"verify", repo_}));
+}
+
+TEST_F(EditLoop, AttributesThatTheMeshDoesNotHaveAreNamed) {
+  const std::string file = checked_out("middle.obj");
+  std::istringstream lines(read_text(file));
+  std::string painted;
+  for (std::string line; std::getline(lines, line);) painted += line + (line.starts_with("v ") ? " 1 0 0\n" : "\n");
+  write_text(file, painted);
+  EXPECT_THAT(run_ramcdb({"status", file}).out,
+              AllOf(HasSubstr("nothing changed"), HasSubstr("not taken         color")));
+  const auto commit = only_object(run_ramcdb({"commit", file, "-m", "paint", "--json"}).out);
+  EXPECT_EQ(commit["revision"], 1);
+  EXPECT_EQ(commit["notes"]["attributes_not_taken"], nlohmann::json({"color"}));
 }
 
 /// Takes the last face out of a checked-out text PLY.
