@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "chartify/turns.h"
-#include "chartify/vertex_table.h"
+#include "chartify/vertex_scratch.h"
 
 namespace ramcdb::chartify {
 namespace {
@@ -261,7 +261,7 @@ class Straightener {
   Partition& partition_;
   const MoveRules* rules_;
   std::uint32_t left_ = 0, right_ = 0, begin_ = 0, end_ = 0;
-  VertexTable<VertexState> vertices_;
+  VertexScratch<VertexState> vertices_;
   std::vector<HalfEdge> on_path_;  ///< the new path both ways, ascending
   using Entry = std::pair<std::uint32_t, std::uint32_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;

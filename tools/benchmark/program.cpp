@@ -8,10 +8,11 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <chrono>
 #include <exception>
 #include <fstream>
+#include <optional>
+#include <stop_token>
 #include <thread>
 
 #include "ramcdb/error.h"
@@ -28,25 +29,24 @@ std::uint64_t anonymous_bytes(pid_t process) {
 }
 
 /// Looks at a process until it is told to stop.
-class MemoryWatch {
+class AnonymousMemoryWatch {
  public:
-  explicit MemoryWatch(pid_t process)
-      : watch_([this, process] {
-          while (!done_) {
+  explicit AnonymousMemoryWatch(pid_t process)
+      : watch_([this, process](const std::stop_token& done) {
+          while (!done.stop_requested()) {
             peak_ = std::max(peak_, anonymous_bytes(process));
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
           }
         }) {}
   std::uint64_t stop() {
-    done_ = true;
+    watch_.request_stop();
     watch_.join();
     return peak_;
   }
 
  private:
   std::uint64_t peak_ = 0;
-  std::atomic<bool> done_ = false;
-  std::thread watch_;
+  std::jthread watch_;
 };
 
 std::string read_all(int from) {
@@ -91,15 +91,15 @@ int run_guarded(int (*run)(int, char**), int argc, char** argv) {
 ProgramUse run_program(std::vector<std::string> command) {
   ProgramUse use;
   const double cpu_before = cpu_seconds(RUSAGE_CHILDREN);
-  int status = 0;
+  int status = 0, output = -1;
+  std::optional<AnonymousMemoryWatch> watch;
   use.seconds = seconds([&] {
-    int output = -1;
     const pid_t child = spawn(command, output);
-    MemoryWatch watch(child);
+    watch.emplace(child);
     use.output = read_all(output);
     ::waitpid(child, &status, 0);
-    use.peak_anonymous = watch.stop();
   });
+  use.peak_anonymous = watch->stop();
   if (status != 0)
     throw Error(Errc::invalid_argument, "the program failed", fmt::format("{}", fmt::join(command, " ")));
   use.cpu_seconds = cpu_seconds(RUSAGE_CHILDREN) - cpu_before;

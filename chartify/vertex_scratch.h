@@ -8,7 +8,7 @@ namespace ramcdb::chartify {
 
 /// Values of some vertices of a large mesh, all of which are forgotten at once. Takes memory by their number.
 template <class Value>
-class VertexTable {
+class VertexScratch {
  public:
   void clear() {
     ++age_;
