@@ -29,7 +29,7 @@ void refine(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const N
   const BorderStraightener straightener(mesh, twins);
   for (int i = 0; i < kRefinements; ++i) {
     progress(static_cast<double>(i) / kRefinements);
-    move_faces(mover);
+    move_faces(mover, threads);
     straightener.run(limits, partition, nullptr, threads);
   }
   merge_pieces(neighbours, partition);

@@ -20,23 +20,17 @@ std::array<std::uint32_t, 3> FaceMover::charts_around(std::uint32_t face) const 
   return around;
 }
 
-int FaceMover::gain(const std::array<std::uint32_t, 3>& around, std::uint32_t from, std::uint32_t to) const {
-  return static_cast<int>(std::count(around.begin(), around.end(), to) -
-                          std::count(around.begin(), around.end(), from));
-}
-
-FaceMover::Choice FaceMover::best_choice(std::uint32_t face) const {
-  const auto around = charts_around(face);
+std::optional<int> FaceMover::gain(std::uint32_t face, std::uint32_t to) const {
   const std::uint32_t from = chart(face);
-  Choice best;
-  for (const std::uint32_t to : around) {
-    if (to == kNone || to == from || to == best.to || !may_move(face, to)) continue;
-    const Choice choice{to, gain(around, from, to)};
-    if (best.to == kNone || choice.gain > best.gain ||
-        (choice.gain == best.gain && std::pair(size(to), to) < std::pair(size(best.to), best.to)))
-      best = choice;
+  int in_to = 0, in_from = 0;
+  for (std::uint32_t e = 0; e < 3; ++e) {
+    const std::uint32_t g = neighbour(face, e);
+    if (g == kNone) continue;
+    in_to += chart(g) == to;
+    in_from += chart(g) == from;
   }
-  return best;
+  if (in_to == 0 || !may_move(face, to)) return {};
+  return in_to - in_from;
 }
 
 FaceMover::Choice FaceMover::smallest_choice(std::uint32_t face) const {
@@ -45,8 +39,7 @@ FaceMover::Choice FaceMover::smallest_choice(std::uint32_t face) const {
   Choice best;
   for (const std::uint32_t to : around) {
     if (to == kNone || to == from || size(to) >= size(from) || !may_move(face, to)) continue;
-    if (best.to == kNone || std::pair(size(to), to) < std::pair(size(best.to), best.to))
-      best = {to, gain(around, from, to)};
+    if (best.to == kNone || std::pair(size(to), to) < std::pair(size(best.to), best.to)) best = {to, *gain(face, to)};
   }
   return best;
 }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "chartify/half_edge_twins.h"
@@ -27,7 +29,8 @@ struct SizeLimits {
 };
 
 /// Moves single faces from chart to chart so that charts stay connected and get no new holes or pinches: the rules
-/// look at the faces around one vertex only.
+/// look at the faces around one vertex only. Several threads may use one, if each moves faces between charts that no
+/// other does.
 class FaceMover {
  public:
   /// \param rules which faces may move; nullptr: all
@@ -42,9 +45,9 @@ class FaceMover {
     int gain = 0;  ///< edges that stop to be border less edges that become border
   };
 
-  /// Of the charts around a face that it may move to the one with most edges to it; ties to the smaller chart, then to
-  /// the lower number. kNone for a face inside its chart, or one that may not move.
-  [[nodiscard]] Choice best_choice(std::uint32_t face) const;
+  /// What is gained by moving a face to a chart beside it; nothing where that has no face beside it, or it may not
+  /// move.
+  [[nodiscard]] std::optional<int> gain(std::uint32_t face, std::uint32_t to) const;
   /// The smallest chart around a face that is smaller than the face's own.
   [[nodiscard]] Choice smallest_choice(std::uint32_t face) const;
 
@@ -55,17 +58,16 @@ class FaceMover {
   void move(std::uint32_t face, std::uint32_t to) {
     --partition_.sizes[chart(face)];
     ++partition_.sizes[to];
-    partition_.chart_of_face[face] = to;
+    std::atomic_ref(partition_.chart_of_face[face]).store(to, std::memory_order_relaxed);
   }
 
-  [[nodiscard]] std::uint32_t chart(std::uint32_t face) const { return partition_.chart_of_face[face]; }
-  [[nodiscard]] std::uint32_t size(std::uint32_t c) const { return partition_.sizes[c]; }
-  [[nodiscard]] std::uint32_t face_count() const { return static_cast<std::uint32_t>(twins_.size() / 3); }
-  /// Whether it has a neighbour in another chart.
-  [[nodiscard]] bool is_at_border(std::uint32_t face) const {
-    const auto is_other = [&](std::uint32_t g) { return g != kNone && chart(g) != chart(face); };
-    return is_other(neighbour(face, 0)) || is_other(neighbour(face, 1)) || is_other(neighbour(face, 2));
+  /// Others may be moving faces between other charts meanwhile.
+  [[nodiscard]] std::uint32_t chart(std::uint32_t face) const {
+    return std::atomic_ref(partition_.chart_of_face[face]).load(std::memory_order_relaxed);
   }
+  [[nodiscard]] std::uint32_t size(std::uint32_t c) const { return partition_.sizes[c]; }
+  [[nodiscard]] std::uint32_t chart_count() const { return static_cast<std::uint32_t>(partition_.sizes.size()); }
+  [[nodiscard]] std::uint32_t face_count() const { return static_cast<std::uint32_t>(twins_.size() / 3); }
   /// kNone where the edge has no other face.
   [[nodiscard]] std::uint32_t neighbour(std::uint32_t face, std::uint32_t edge) const {
     const HalfEdge twin = twins_[3 * face + edge];
@@ -77,7 +79,6 @@ class FaceMover {
     return rules_ == nullptr || rules_->allow(face, to);
   }
   [[nodiscard]] std::array<std::uint32_t, 3> charts_around(std::uint32_t face) const;
-  [[nodiscard]] int gain(const std::array<std::uint32_t, 3>& around, std::uint32_t from, std::uint32_t to) const;
   /// Whether all other faces around the start of a half-edge form one fan that is wholly in a chart,
   /// and a fan that is not very large.
   [[nodiscard]] bool others_all_in(HalfEdge h, std::uint32_t c) const;

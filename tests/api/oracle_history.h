@@ -29,8 +29,9 @@ class ThreeWay {
   ThreeWay(const Model& base, const Model& ours, const Model& theirs)
       : base_(base), ours_(ours), theirs_(theirs), touched_(touched(base, ours)), by_theirs_(touched(base, theirs)) {}
 
-  /// Neither changed anything at a vertex at which the other did.
-  [[nodiscard]] bool disjoint() const { return !common(touched_, by_theirs_); }
+  /// Neither changed anything at a vertex at which the other did, nor next to one. (A vertex that moved among faces of
+  /// which most were replaced is taken for another, so that these faces, too, are new.)
+  [[nodiscard]] bool disjoint() const { return !common(touched_, with_neighbours(by_theirs_)); }
   /// Nor in a chart in which the other did. New faces that share no edge with old ones go to any chart of their region.
   /// \param by_theirs the charts that theirs changed
   [[nodiscard]] bool apart(const ChartsOfVertices& charts, const std::set<ChartId>& by_theirs) const {
@@ -59,6 +60,14 @@ class ThreeWay {
   template <class T>
   static bool common(const std::set<T>& a, const std::set<T>& b) {
     return std::ranges::any_of(a, [&](const T& x) { return b.contains(x); });
+  }
+  [[nodiscard]] std::set<std::uint64_t> with_neighbours(const std::set<std::uint64_t>& ids) const {
+    std::set<std::uint64_t> all = ids;
+    for (const Model* model : {&base_, &theirs_})
+      for (const Triangle& t : model->faces)
+        if (std::ranges::any_of(t, [&](std::uint32_t v) { return ids.contains(model->ids[v]); }))
+          for (const std::uint32_t v : t) all.insert(model->ids[v]);
+    return all;
   }
   [[nodiscard]] bool adds(const Model& side) const {
     return side.faces.size() > base_.faces.size() || side.ids.size() > base_.ids.size();
