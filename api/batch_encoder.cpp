@@ -4,6 +4,7 @@
 
 #include "api/layer_encoder.h"
 #include "api/new_mesh.h"
+#include "chartify/parallel.h"
 #include "chartify/wire_net_builder.h"
 #include "ramcdb/error.h"
 
@@ -23,21 +24,34 @@ class BatchEncoder {
         corner_of_shared_(charts.seams.net.corners.size()) {}
 
   NetEntries run() {
-    for (std::size_t b = 0; b < charts_.batches.size(); ++b) encode(b);
+    parallel_in_order(
+        charts_.batches.size(), charts_.at_a_time, work_.threads, [&](std::size_t b) { return prepare(b); },
+        [&](std::size_t b, const Prepared& prepared) { encode(b, prepared); });
     return std::move(entries_);
   }
 
  private:
-  void encode(std::size_t b) {
+  struct Prepared {
+    ChartBatch batch;
+    chartify::PartSeams seams;
+    chartify::WireNet net;
+  };
+
+  [[nodiscard]] Prepared prepare(std::size_t b) const {
+    ChartBatch batch = load_charts(charts_.spool, charts_.batches[b], charts_.points, record_.lattice);
+    const auto shared = charts_.seams.shared_in(batch);
+    auto seams =
+        chartify::seams_of({batch.mesh, batch.charts, batch.number, shared}, charts_.seams.net, charts_.seams.wires[b]);
+    auto net = chartify::build_wire_net(batch.mesh, batch.charts, seams.wires, seams.corners);
+    return {std::move(batch), std::move(seams), std::move(net)};
+  }
+
+  void encode(std::size_t b, const Prepared& prepared) {
     const auto report = [&](double done) {
       work_.report("encode", (static_cast<double>(b) + done) / static_cast<double>(charts_.batches.size()));
     };
     report(0);
-    const ChartBatch batch = load_charts(charts_.spool, charts_.batches[b], charts_.points, record_.lattice);
-    const auto shared = charts_.seams.shared_in(batch);
-    const chartify::PartSeams seams =
-        chartify::seams_of({batch.mesh, batch.charts, batch.number, shared}, charts_.seams.net, charts_.seams.wires[b]);
-    const chartify::WireNet net = chartify::build_wire_net(batch.mesh, batch.charts, seams.wires, seams.corners);
+    const auto& [batch, seams, net] = prepared;
     const NetIds ids = ids_for(batch, net, seams);
     std::vector<Point> exact;
     if (record_.exact)

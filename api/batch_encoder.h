@@ -16,6 +16,7 @@ namespace ramcdb::detail {
 struct BatchedCharts {
   const ChartSpool& spool;
   const std::vector<ChartSpool::Batch>& batches;
+  std::size_t at_a_time;  ///< how many batches are held
   const ChartSeams& seams;
   const PointFile& points;
 };

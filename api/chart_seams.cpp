@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "api/face_blocks.h"
+#include "api/vertex_ranks.h"
+#include "chartify/parallel.h"
 
 namespace ramcdb::detail {
 namespace {
@@ -18,25 +20,30 @@ struct EdgeOfBatch {
   friend auto operator<=>(const EdgeOfBatch&, const EdgeOfBatch&) = default;
 };
 
+/// Faces at shared vertices, by vertices of the whole mesh.
+std::vector<Triangle> faces_around(const ChartBatch& batch, const std::vector<std::uint8_t>& shared) {
+  std::vector<Triangle> faces;
+  for (const Triangle& t : batch.mesh.faces)
+    if (shared[t[0]] || shared[t[1]] || shared[t[2]])
+      faces.push_back({batch.number[t[0]], batch.number[t[1]], batch.number[t[2]]});
+  return faces;
+}
+
 /// The faces around all shared vertices, as a mesh of their own.
 class SharedSurroundings {
  public:
-  void add(const ChartBatch& batch, const std::vector<std::uint8_t>& shared) {
-    for (const Triangle& t : batch.mesh.faces)
-      if (shared[t[0]] || shared[t[1]] || shared[t[2]])
-        faces_.push_back({batch.number[t[0]], batch.number[t[1]], batch.number[t[2]]});
-  }
+  void add(const std::vector<Triangle>& faces) { faces_.insert(faces_.end(), faces.begin(), faces.end()); }
 
   [[nodiscard]] Topology analyze(const SharedVertices& shared) {
-    std::vector<std::uint32_t> vertices;
-    for (const Triangle& t : faces_) vertices.insert(vertices.end(), t.begin(), t.end());
-    sort_vertices(vertices);
+    std::vector<std::uint32_t> corners;
+    for (const Triangle& t : faces_) corners.insert(corners.end(), t.begin(), t.end());
+    const VertexRanks ranks(corners);
+    auto rank = ranks.rank.begin();
     for (Triangle& t : faces_)
-      for (std::uint32_t& v : t)
-        v = static_cast<std::uint32_t>(std::lower_bound(vertices.begin(), vertices.end(), v) - vertices.begin());
-    std::vector<std::uint8_t> is_shared(vertices.size(), 0);
-    for_each_shared(vertices, shared, [&](std::size_t v, std::size_t) { is_shared[v] = 1; });
-    chartify::IndexedMesh mesh{std::vector<LatticePoint>(vertices.size()), std::move(faces_)};
+      for (std::uint32_t& v : t) v = *rank++;
+    std::vector<std::uint8_t> is_shared(ranks.vertices.size(), 0);
+    for_each_shared(ranks.vertices, shared, [&](std::size_t v, std::size_t) { is_shared[v] = 1; });
+    chartify::IndexedMesh mesh{std::vector<LatticePoint>(ranks.vertices.size()), std::move(faces_)};
     return analyze_shared(mesh, is_shared);
   }
 
@@ -46,9 +53,9 @@ class SharedSurroundings {
 
 class SeamFinder {
  public:
-  SeamFinder(const ChartSpool& spool, const std::vector<ChartSpool::Batch>& batches, const PointFile& points,
-             const Lattice& lattice, const LargeWork& work)
-      : spool_(spool), batches_(batches), points_(points), lattice_(lattice), work_(work) {}
+  SeamFinder(const ChartSpool& spool, const std::vector<ChartSpool::Batch>& batches, std::size_t at_a_time,
+             const PointFile& points, const Lattice& lattice, const LargeWork& work)
+      : spool_(spool), batches_(batches), at_a_time_(at_a_time), points_(points), lattice_(lattice), work_(work) {}
 
   ChartSeams run() {
     out_.wires.resize(batches_.size());
@@ -67,29 +74,42 @@ class SeamFinder {
   }
   [[nodiscard]] ChartBatch load(std::size_t b) const { return load_charts(spool_, batches_[b], points_, lattice_); }
 
+  /// Calls take(batch, work(batch)) for one batch after the other; what takes time is done for several at once.
+  template <class Work, class Take>
+  void for_each_batch(int pass, Work&& work, Take&& take) const {
+    parallel_in_order(batches_.size(), at_a_time_, work_.threads, std::forward<Work>(work),
+                      [&](std::size_t b, auto&& result) {
+                        report(pass, b);
+                        take(static_cast<std::uint32_t>(b), std::move(result));
+                      });
+  }
+
   void find_shared_vertices() {
     SharedVertexFinder finder(work_, kStage);
-    for (std::size_t b = 0; b < batches_.size(); ++b) {
-      report(0, b);
+    const auto vertices_of = [&](std::size_t b) {
       std::vector<std::uint32_t> vertices;
-      for (std::size_t c = batches_[b].first; c < batches_[b].last; ++c)
-        for (const ChartFace& face : spool_.faces_of(c))
-          for (const std::uint32_t v : face.corners)
-            if (v != SortedFace::kNoVertex) vertices.push_back(v);
-      finder.add_group(std::move(vertices));
-    }
+      for (std::size_t c = batches_[b].first; c < batches_[b].last; ++c) {
+        const auto more = spool_.vertices_of(c);
+        vertices.insert(vertices.end(), more.begin(), more.end());
+      }
+      sort_vertices(vertices);
+      return vertices;
+    };
+    for_each_batch(0, vertices_of,
+                   [&](std::uint32_t, std::vector<std::uint32_t> vertices) { finder.add_group(vertices); });
     out_.shared = finder.find();
   }
 
   void find_seams() {
     std::vector<EdgeOfBatch> edges;
-    for (std::uint32_t b = 0; b < batches_.size(); ++b) {
-      report(1, b);
+    const auto edges_of = [&](std::size_t b) {
       const ChartBatch batch = load(b);
       const auto shared = out_.shared_in(batch);
-      for (const auto& edge : chartify::edges_between_shared({batch.mesh, batch.charts, batch.number, shared}))
-        edges.push_back({edge, b});
-    }
+      return chartify::edges_between_shared({batch.mesh, batch.charts, batch.number, shared});
+    };
+    for_each_batch(1, edges_of, [&](std::uint32_t b, const std::vector<chartify::NumberedEdge>& found) {
+      for (const auto& edge : found) edges.push_back({edge, b});
+    });
     std::sort(edges.begin(), edges.end());
     for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
       while (end < edges.size() && edges[end].edge == edges[begin].edge) ++end;
@@ -103,20 +123,35 @@ class SeamFinder {
     }
   }
 
+  /// What a batch alone knows of its end.
+  struct BatchEnds {
+    Topology topology;
+    std::vector<Triangle> surroundings;
+    chartify::SharedEnds ends;
+  };
+
+  [[nodiscard]] BatchEnds ends_of(std::size_t b) const {
+    const ChartBatch batch = load(b);
+    const auto shared = out_.shared_in(batch);
+    BatchEnds found{analyze_own(batch.mesh, shared), {}, {}};
+    if (batches_.size() == 1) return found;
+    found.surroundings = faces_around(batch, shared);
+    found.ends = chartify::find_shared_ends({batch.mesh, batch.charts, batch.number, shared}, seams_of_[b]);
+    return found;
+  }
+
   void join() {
     chartify::SharedEnds ends;
     SharedSurroundings surroundings;
-    for (std::uint32_t b = 0; b < batches_.size(); ++b) {
-      report(2, b);
-      const ChartBatch batch = load(b);
-      const auto shared = out_.shared_in(batch);
-      out_.topology += analyze_own(batch.mesh, shared);
-      if (batches_.size() == 1) return;
-      surroundings.add(batch, shared);
-      const auto found = chartify::find_shared_ends({batch.mesh, batch.charts, batch.number, shared}, seams_of_[b]);
-      ends.cut_edges.insert(ends.cut_edges.end(), found.cut_edges.begin(), found.cut_edges.end());
-      ends.corners.insert(ends.corners.end(), found.corners.begin(), found.corners.end());
-    }
+    for_each_batch(
+        2, [&](std::size_t b) { return ends_of(b); },
+        [&](std::uint32_t, const BatchEnds& found) {
+          out_.topology += found.topology;
+          surroundings.add(found.surroundings);
+          ends.cut_edges.insert(ends.cut_edges.end(), found.ends.cut_edges.begin(), found.ends.cut_edges.end());
+          ends.corners.insert(ends.corners.end(), found.ends.corners.begin(), found.ends.corners.end());
+        });
+    if (batches_.size() == 1) return;
     out_.topology += surroundings.analyze(out_.shared);
     out_.net =
         chartify::join_seams(seams_, std::move(ends), [&](std::uint32_t v) { return lattice_.snap(points_.at(v)); });
@@ -126,6 +161,7 @@ class SeamFinder {
 
   const ChartSpool& spool_;
   const std::vector<ChartSpool::Batch>& batches_;
+  std::size_t at_a_time_;
   const PointFile& points_;
   const Lattice& lattice_;
   const LargeWork& work_;
@@ -143,9 +179,9 @@ std::vector<std::uint8_t> ChartSeams::shared_in(const ChartBatch& batch) const {
   return is_shared;
 }
 
-ChartSeams find_seams(const ChartSpool& spool, const std::vector<ChartSpool::Batch>& batches, const PointFile& points,
-                      const Lattice& lattice, const LargeWork& work) {
-  return SeamFinder(spool, batches, points, lattice, work).run();
+ChartSeams find_seams(const ChartSpool& spool, const std::vector<ChartSpool::Batch>& batches, std::size_t at_a_time,
+                      const PointFile& points, const Lattice& lattice, const LargeWork& work) {
+  return SeamFinder(spool, batches, at_a_time, points, lattice, work).run();
 }
 
 }  // namespace ramcdb::detail

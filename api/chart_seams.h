@@ -22,7 +22,9 @@ struct ChartSeams {
   [[nodiscard]] std::vector<std::uint8_t> shared_in(const ChartBatch& batch) const;
 };
 
+/// \param at_a_time how many batches are held
 [[nodiscard]] ChartSeams find_seams(const ChartSpool& spool, const std::vector<ChartSpool::Batch>& batches,
-                                    const PointFile& points, const Lattice& lattice, const LargeWork& work);
+                                    std::size_t at_a_time, const PointFile& points, const Lattice& lattice,
+                                    const LargeWork& work);
 
 }  // namespace ramcdb::detail

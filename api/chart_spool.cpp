@@ -4,88 +4,76 @@
 #include <numeric>
 #include <tuple>
 
-#include "api/face_blocks.h"
+#include "api/vertex_ranks.h"
 
 namespace ramcdb::detail {
-namespace {
-
-constexpr std::uint32_t kNone = chartify::kNone;
-
-/// Gives vertices of a whole mesh numbers of their own, in the order in which they come.
-class Renumbering {
- public:
-  explicit Renumbering(std::vector<std::uint32_t> vertices) : sorted_(std::move(vertices)) {
-    sort_vertices(sorted_);
-    own_.assign(sorted_.size(), kNone);
-  }
-
-  std::uint32_t number(std::uint32_t vertex, std::vector<std::uint32_t>& in_order) {
-    const auto at = std::lower_bound(sorted_.begin(), sorted_.end(), vertex) - sorted_.begin();
-    std::uint32_t& own = own_[static_cast<std::size_t>(at)];
-    if (own == kNone) {
-      own = static_cast<std::uint32_t>(in_order.size());
-      in_order.push_back(vertex);
-    }
-    return own;
-  }
-
- private:
-  std::vector<std::uint32_t> sorted_, own_;
-};
-
-}  // namespace
-
-void ChartSpool::add(std::uint64_t key, std::span<const ChartFace> faces, std::uint32_t isolated) {
-  charts_.push_back({key, faces_.size(), static_cast<std::uint32_t>(faces.size()), isolated});
-  faces_.add(faces);
+void ChartSpool::add(std::uint64_t key, const SpooledChart& chart) {
+  charts_.push_back({key, vertices_.size(), faces_.size(), static_cast<std::uint32_t>(chart.vertices.size()),
+                     static_cast<std::uint32_t>(chart.faces.size()), chart.isolated});
+  vertices_.add(std::span(chart.vertices));
+  faces_.add(std::span(chart.faces));
 }
 
 void ChartSpool::finish() {
+  vertices_.flush();
   faces_.flush();
-  std::sort(charts_.begin(), charts_.end(),
-            [](const Entry& a, const Entry& b) { return std::tuple(a.key, a.begin) < std::tuple(b.key, b.begin); });
+  std::sort(charts_.begin(), charts_.end(), [](const Entry& a, const Entry& b) {
+    return std::tuple(a.key, a.first_vertex) < std::tuple(b.key, b.first_vertex);
+  });
+}
+
+SpooledChart ChartSpool::chart(std::size_t chart) const {
+  const Entry& entry = charts_[chart];
+  return {vertices_of(chart), faces_.read(entry.first_face, entry.faces), entry.isolated};
 }
 
 std::vector<ChartSpool::Batch> ChartSpool::batches(std::uint64_t faces) const {
   std::vector<Batch> batches;
   std::uint64_t held = 0;
   for (std::size_t c = 0; c < charts_.size(); ++c) {
-    if (batches.empty() || held + charts_[c].size > faces) {
+    const std::uint64_t size = std::uint64_t{charts_[c].faces} + charts_[c].isolated;
+    if (batches.empty() || held + size > faces) {
       batches.push_back({c, c});
       held = 0;
     }
     batches.back().last = c + 1;
-    held += charts_[c].size;
+    held += size;
   }
   return batches;
 }
 
 ChartBatch load_charts(const ChartSpool& spool, std::span<const std::size_t> which, const PointFile& points,
                        const Lattice& lattice) {
-  std::vector<std::vector<ChartFace>> charts;
-  std::vector<std::uint32_t> vertices;
+  std::vector<SpooledChart> charts;
+  std::vector<std::uint32_t> named;  // of all charts those in faces first
   for (const std::size_t c : which) {
-    charts.push_back(spool.faces_of(c));
-    for (const ChartFace& face : charts.back())
-      for (const std::uint32_t v : face.corners)
-        if (v != SortedFace::kNoVertex) vertices.push_back(v);
+    const auto& chart = charts.emplace_back(spool.chart(c));
+    named.insert(named.end(), chart.vertices.begin(), chart.vertices.end() - chart.isolated);
   }
-  Renumbering numbers(std::move(vertices));
+  for (const SpooledChart& chart : charts)
+    named.insert(named.end(), chart.vertices.end() - chart.isolated, chart.vertices.end());
+  const VertexRanks ranks(named);
+
   ChartBatch batch;
+  std::vector<std::uint32_t> number(ranks.vertices.size(), chartify::kNone);  // per rank
+  for (std::size_t i = 0; i < named.size(); ++i)
+    if (std::uint32_t& own = number[ranks.rank[i]]; own == chartify::kNone) {
+      own = static_cast<std::uint32_t>(batch.number.size());
+      batch.number.push_back(named[i]);
+    }
   batch.charts.chart_count = static_cast<std::uint32_t>(which.size());
-  for (std::uint32_t c = 0; c < which.size(); ++c)
-    for (const ChartFace& face : std::span(charts[c]).first(charts[c].size() - spool.isolated_in(which[c]))) {
+  std::size_t first = 0;
+  for (std::uint32_t c = 0; c < charts.size(); ++c) {
+    for (const ChartFace& face : charts[c].faces) {
       Triangle t{};
-      for (std::size_t i = 0; i < 3; ++i) t[i] = numbers.number(face.corners[i], batch.number);
+      for (std::size_t i = 0; i < 3; ++i) t[i] = number[ranks.rank[first + face.corners[i]]];
       batch.mesh.faces.push_back(t);
       batch.charts.chart_of_face.push_back(c);
       batch.face.push_back(face.face);
     }
-  for (std::uint32_t c = 0; c < which.size(); ++c)
-    for (const ChartFace& vertex : std::span(charts[c]).last(spool.isolated_in(which[c]))) {
-      (void)numbers.number(vertex.corners[0], batch.number);
-      batch.charts.chart_of_isolated_vertex.push_back(c);
-    }
+    first += charts[c].vertices.size() - charts[c].isolated;
+    batch.charts.chart_of_isolated_vertex.insert(batch.charts.chart_of_isolated_vertex.end(), charts[c].isolated, c);
+  }
   for (const std::uint32_t v : batch.number) batch.mesh.positions.push_back(lattice.snap(points.at(v)));
   return batch;
 }

@@ -11,40 +11,47 @@
 
 namespace ramcdb::detail {
 
-/// A face of a chart by its vertices in the whole mesh; or, as SortedFace, a vertex without a face.
+/// A face of a chart by its vertices in the chart.
 struct ChartFace {
   Triangle corners{};
   std::uint32_t face = 0;  ///< in the file
 };
 
-/// The charts of a mesh, face by face in a temporary file.
+/// A chart for itself.
+struct SpooledChart {
+  std::vector<std::uint32_t> vertices;  ///< numbers in the whole mesh, in the order in which faces name them
+  std::vector<ChartFace> faces;
+  std::uint32_t isolated = 0;  ///< how many of the vertices, the last ones, have no face
+};
+
+/// The charts of a mesh in temporary files.
 class ChartSpool {
  public:
-  explicit ChartSpool(const std::filesystem::path& folder) : faces_(folder) {}
+  explicit ChartSpool(const std::filesystem::path& folder) : vertices_(folder), faces_(folder) {}
 
   /// \param key where the chart lies along the mesh's curve: the least of its faces'
-  /// \param isolated how many of `faces`, the last ones, are vertices without a face
-  void add(std::uint64_t key, std::span<const ChartFace> faces, std::uint32_t isolated);
+  void add(std::uint64_t key, const SpooledChart& chart);
   /// When all are added: numbers the charts along the curve.
   void finish();
 
   [[nodiscard]] std::size_t count() const { return charts_.size(); }
-  [[nodiscard]] std::vector<ChartFace> faces_of(std::size_t chart) const {
-    return faces_.read(charts_[chart].begin, charts_[chart].size);
+  [[nodiscard]] SpooledChart chart(std::size_t chart) const;
+  [[nodiscard]] std::vector<std::uint32_t> vertices_of(std::size_t chart) const {
+    return vertices_.read(charts_[chart].first_vertex, charts_[chart].vertices);
   }
   /// Runs of charts that hold up to so many faces, or are one chart.
   struct Batch {
     std::size_t first = 0, last = 0;
   };
   [[nodiscard]] std::vector<Batch> batches(std::uint64_t faces) const;
-  [[nodiscard]] std::uint32_t isolated_in(std::size_t chart) const { return charts_[chart].isolated; }
 
  private:
   struct Entry {
-    std::uint64_t key, begin;
-    std::uint32_t size, isolated;
+    std::uint64_t key, first_vertex, first_face;
+    std::uint32_t vertices, faces, isolated;
   };
 
+  ScratchRecords<std::uint32_t> vertices_;
   ScratchRecords<ChartFace> faces_;
   std::vector<Entry> charts_;
 };

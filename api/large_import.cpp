@@ -17,10 +17,13 @@
 namespace ramcdb::detail {
 namespace {
 
-/// How many faces are held at a time, with all that chartify/ and codec/ need for them.
-std::uint64_t faces_at_a_time(const LargeWork& work, std::uint32_t chart_faces) {
-  constexpr std::uint64_t kBytesPerFace = 320, kLeastCharts = 4;
-  return std::max<std::uint64_t>(work.memory / kBytesPerFace, kLeastCharts * chart_faces);
+/// Several parts at a time leave no processor idle, as long as each is large enough for good charts.
+PartSizes part_sizes(const LargeWork& work, std::uint32_t chart_faces) {
+  constexpr std::uint64_t kBytesPerFace = 320;  // with all that chartify/ and codec/ need for it
+  constexpr std::uint64_t kLeastCharts = 4, kGoodCharts = 128, kMostAtATime = 8;
+  const std::uint64_t faces = std::max<std::uint64_t>(work.memory / kBytesPerFace, kLeastCharts * chart_faces);
+  const std::uint64_t at_a_time = std::clamp<std::uint64_t>(faces / (kGoodCharts * chart_faces), 1, kMostAtATime);
+  return {faces / at_a_time, static_cast<std::size_t>(at_a_time)};
 }
 
 /// The positions of a mesh; every walk through them can be cancelled.
@@ -53,15 +56,15 @@ MeshRecord record_for(const MeshSpool& mesh, const ImportOptions& options, Impor
   return record;
 }
 
-ChartSpool cut_charts(const MeshSpool& mesh, const MeshRecord& record, const ImportOptions& options,
-                      std::uint64_t most_faces, const LargeWork& work) {
+ChartSpool cut_charts(const MeshSpool& mesh, const MeshRecord& record, const ImportOptions& options, PartSizes sizes,
+                      const LargeWork& work) {
   chartify::Options chartify_options;
   chartify_options.target_faces = options.chart_faces;
   chartify_options.method = options.paper_chartify ? chartify::Method::paper : chartify::Method::refined;
   chartify_options.threads = options.threads;
   // Half is left to what waits for a block.
-  const FaceBlocks blocks = sort_into_blocks(mesh, record.lattice, record.range, most_faces / 2, work);
-  return cut_blocks(blocks, mesh.points, record.lattice, most_faces, chartify_options, work);
+  const FaceBlocks blocks = sort_into_blocks(mesh, record.lattice, record.range, sizes.most_faces / 2, work);
+  return cut_blocks(blocks, mesh.points, record.lattice, sizes, chartify_options, work);
 }
 
 }  // namespace
@@ -74,13 +77,13 @@ ImportReport import_large(db::Store& store, const std::filesystem::path& file, c
   report.vertices_welded = mesh.welded;
   for (const auto& left_out : mesh.dropped) report.dropped.push_back({left_out.what, left_out.count});
   MeshRecord record = record_for(mesh, options, report, work);
-  const std::uint64_t most_faces = faces_at_a_time(work, options.chart_faces);
-  const ChartSpool spool = cut_charts(mesh, record, options, most_faces, work);
-  const std::vector<ChartSpool::Batch> batches = spool.batches(most_faces);
-  const ChartSeams seams = find_seams(spool, batches, mesh.points, record.lattice, work);
+  const PartSizes sizes = part_sizes(work, options.chart_faces);
+  const ChartSpool spool = cut_charts(mesh, record, options, sizes, work);
+  const std::vector<ChartSpool::Batch> batches = spool.batches(sizes.most_faces);
+  const ChartSeams seams = find_seams(spool, batches, sizes.at_a_time, mesh.points, record.lattice, work);
   note_topology(record, seams.topology);
 
-  const BatchedCharts charts{spool, batches, seams, mesh.points};
+  const BatchedCharts charts{spool, batches, sizes.at_a_time, seams, mesh.points};
   const codec::CoderTables tables = train_tables(charts, record);
   if (!(tables == codec::CoderTables{})) record.table = record.next_table;
   BlobSpool blobs(work.folder);

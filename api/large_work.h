@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -17,6 +18,13 @@ struct LargeWork {
   void report(std::string_view stage, double done) const {
     if (progress) progress(stage, done);
   }
+};
+
+/// How a mesh that does not fit memory is cut up. Nothing of it depends on the number of threads: charts do not,
+/// either.
+struct PartSizes {
+  std::uint64_t most_faces = 0;  ///< of a part
+  std::size_t at_a_time = 1;     ///< how many parts are held
 };
 
 }  // namespace ramcdb::detail

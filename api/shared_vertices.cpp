@@ -1,13 +1,15 @@
 #include "api/shared_vertices.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "api/external_sort.h"
+#include "chartify/radix_sort.h"
 
 namespace ramcdb::detail {
 
 void sort_vertices(std::vector<std::uint32_t>& vertices) {
-  std::sort(vertices.begin(), vertices.end());
+  if (!std::is_sorted(vertices.begin(), vertices.end())) chartify::radix_sort(vertices, std::identity{});
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
 }
 

@@ -6,7 +6,10 @@
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <thread>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace ramcdb {
@@ -50,6 +53,21 @@ inline void parallel_ranges(std::size_t count, unsigned threads,
   constexpr std::size_t kRange = 1 << 16;
   parallel_for((count + kRange - 1) / kRange, threads,
                [&](std::size_t i) { work(i * kRange, std::min(count, (i + 1) * kRange)); });
+}
+
+/// Calls take(i, work(i)) for i = 0 .. count - 1 in this order, on the calling thread; `work` runs on up to `threads`
+/// threads, for up to `held` numbers at a time.
+template <class Work, class Take>
+void parallel_in_order(std::size_t count, std::size_t held, unsigned threads, Work&& work, Take&& take) {
+  using Result = std::invoke_result_t<Work, std::size_t>;
+  for (std::size_t begin = 0; begin < count; begin += held) {
+    std::vector<std::optional<Result>> results(std::min(held, count - begin));
+    parallel_for(results.size(), threads, [&](std::size_t i) { results[i].emplace(work(begin + i)); });
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      take(begin + i, std::move(*results[i]));
+      results[i].reset();
+    }
+  }
 }
 
 /// Calls both, `aside` on a thread of its own if there may be two. The first exception of either is thrown.

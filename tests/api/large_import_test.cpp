@@ -12,7 +12,8 @@
 namespace ramcdb::test {
 namespace {
 
-constexpr std::uint64_t kLittle = 1 << 16;  ///< bytes: blocks are then as small as charts allow
+constexpr std::uint64_t kLittle = 1 << 16;   ///< bytes: blocks are then as small as charts allow
+constexpr std::uint64_t kSeveral = 5 << 20;  ///< bytes: two good blocks at a time, of charts of 50 faces
 
 /// A repository to import into.
 class Imports {
@@ -169,29 +170,40 @@ TEST(LargeImport, InManyBlocksGivesTheSameMeshAndCounts) {
 }
 
 TEST(LargeImport, IsTheSameForAnyOrderOfTheFileAndAnyNumberOfThreads) {
-  const Imports imports;
-  const TestMesh mesh = scan(8000);
-  (void)imports.import(mesh, "as it is", kLittle);
-  (void)imports.import(shuffled(mesh, 7), "shuffled", kLittle);
-  (void)imports.import(mesh, "on one thread", kLittle, [](ImportOptions& options) { options.threads = 1; });
-  const auto expected = blobs_of(imports.repository(), "as it is");
-  EXPECT_EQ(blobs_of(imports.repository(), "on one thread"), expected);
-  EXPECT_EQ(blobs_of(imports.repository(), "shuffled"), expected);
+  for (const auto& [memory, faces] : {std::pair(kLittle, 8000), std::pair(kSeveral, 30'000)}) {
+    SCOPED_TRACE(memory);
+    const Imports imports;
+    const TestMesh mesh = scan(static_cast<std::size_t>(faces));
+    (void)imports.import(mesh, "as it is", memory);
+    (void)imports.import(shuffled(mesh, 7), "shuffled", memory);
+    (void)imports.import(mesh, "on one thread", memory, [](ImportOptions& options) { options.threads = 1; });
+    (void)imports.import(mesh, "on eight", memory, [](ImportOptions& options) { options.threads = 8; });
+    const auto expected = blobs_of(imports.repository(), "as it is");
+    EXPECT_EQ(blobs_of(imports.repository(), "on one thread"), expected);
+    EXPECT_EQ(blobs_of(imports.repository(), "on eight"), expected);
+    EXPECT_EQ(blobs_of(imports.repository(), "shuffled"), expected);
+    expect_same_mesh(imports.repository().snapshot("shuffled"), mesh);
+    EXPECT_THAT(imports.problems(), testing::IsEmpty());
+  }
 }
 
 TEST(LargeImport, CutsChartsAboutAsWellAsInCore) {
-  const Imports imports;
   const TestMesh mesh = scan(150'000);
-  const auto options = [](ImportOptions& o) { o.chart_faces = 500; };
-  const MeshInfo in_core = imports.import(mesh, "in core", {}, options).info;
-  const MeshInfo large = imports.import(mesh, "large", 6 << 20, options).info;
   const auto wires = [](const MeshInfo& info) {
     return static_cast<double>(info.bytes.wires) / static_cast<double>(info.bytes.payload);
   };
-  EXPECT_NE(large.wires, in_core.wires) << "it was cut in several blocks";
-  EXPECT_LT(wires(large), 1.1 * wires(in_core));
-  EXPECT_LT(large.chart_faces.p95, 1.1 * in_core.chart_faces.p95);
-  EXPECT_LT(static_cast<double>(large.charts), 1.1 * static_cast<double>(in_core.charts));
+  // One block of charts of 500 faces at a time, two of charts of 200.
+  for (const auto& [chart_faces, memory] : {std::pair(500U, 6 << 20), std::pair(200U, 18 << 20)}) {
+    SCOPED_TRACE(chart_faces);
+    const Imports imports;
+    const auto options = [of = chart_faces](ImportOptions& o) { o.chart_faces = of; };
+    const MeshInfo in_core = imports.import(mesh, "in core", {}, options).info;
+    const MeshInfo large = imports.import(mesh, "large", memory, options).info;
+    EXPECT_NE(large.wires, in_core.wires) << "it was cut in several blocks";
+    EXPECT_LT(wires(large), 1.1 * wires(in_core));
+    EXPECT_LT(large.chart_faces.p95, 1.1 * in_core.chart_faces.p95);
+    EXPECT_LT(static_cast<double>(large.charts), 1.1 * static_cast<double>(in_core.charts));
+  }
 }
 
 TEST(LargeImport, TakesEveryFormatThatIsReadInPieces) {
