@@ -191,6 +191,7 @@ class ThreeWayMerge {
         if (moved_by_us(b)) conflict_at(b, kMovedGone);
         if (has_new_values(AttributeOf::vertex, b, ours_.mesh.attributes, our_vertex_[b])) conflict_at(b, kValueGone);
       }
+    expect_isolated_vertices();
     our_new_vertex_.assign(ours_.vertex_source.size(), kNew);
     new_vertices_ = our_new_vertex_;
     for (std::uint32_t v = 0; v < ours_.vertex_source.size(); ++v)
@@ -201,6 +202,24 @@ class ThreeWayMerge {
         }
         new_vertices_[v] = our_new_vertex_[v] = builder_.add_vertex(kNew, our_places_[v]);
       }
+  }
+
+  /// Where both sides lack a vertex without faces, and theirs has new ones, it may have moved to one of these: nothing
+  /// else tells who it is.
+  void expect_isolated_vertices() {
+    const std::vector<bool> of_base = with_faces(base_), of_theirs = with_faces(theirs_);
+    bool has_new = false;
+    for (std::uint32_t v = 0; v < base_vertex_.size(); ++v)
+      has_new = has_new || (base_vertex_[v] == kNew && !of_theirs[v]);
+    for (std::uint32_t b = 0; has_new && b < of_base.size(); ++b)
+      if (!of_base[b] && our_vertex_[b] == kNew && their_vertex_[b] == kNew) conflict_at(b, kMovedGone);
+  }
+
+  [[nodiscard]] static std::vector<bool> with_faces(const RegionMesh& mesh) {
+    std::vector<bool> has_face(mesh.points.size(), false);
+    for (const Triangle& t : mesh.faces)
+      for (const std::uint32_t v : t) has_face[v] = true;
+    return has_face;
   }
 
   [[nodiscard]] bool moved_by_us(std::uint32_t base_vertex) const {

@@ -538,7 +538,7 @@ class Oracle {
       EXPECT_LE(ratio, 1.15);
     }
     // Edits of a file keep to its charts; those that have only a few faces left wait for an edit beside them.
-    EXPECT_LE(charts_.small, 5 + charts_.made / 10);
+    EXPECT_LE(charts_.small, 5 + charts_.made / (family_.fair ? 10 : 7));
     std::cout << family_.name << ": " << done_ << " versions (" << merges_ << " merges, " << conflicts_
               << " conflicts), " << info.faces << " faces, " << info.charts << " charts (" << fresh.charts
               << " afresh), payload " << ratio << " of a fresh import; " << again_ << " merged files sent again, "

@@ -193,6 +193,25 @@ TEST_F(RevertInRegion, AChartThatTheVersionRemovedCanBeNamed) {
   expect_whole();
 }
 
+TEST_F(RevertInRegion, AVertexWithoutFacesThatMayHaveMovedSinceIsAConflict) {
+  (void)edit([](Patch& patch) {
+    (void)patch.mesh().add_vertex({3, 3, 2});
+    (void)patch.mesh().add_vertex({4, 3, 2});
+  });
+  (void)edit([](Patch& patch) {
+    std::vector<Patch::Mesh::VertexHandle> loose;
+    for (const auto v : patch.mesh().vertices())
+      if (patch.mesh().is_isolated(v)) loose.push_back(v);
+    ASSERT_EQ(loose.size(), 2U);
+    patch.mesh().point(loose[0])[2] += 1;
+    patch.mesh().delete_vertex(loose[1], false);
+  });
+  const CommitReport report = repository_->revert("v2", {}, message("back"));
+  EXPECT_FALSE(report.conflicts.empty()) << "the one that moved would stay";
+  ASSERT_FALSE(report.conflict_places.empty());
+  EXPECT_EQ(report.conflict_places[0].what, "a vertex that one side moved was removed by the other");
+}
+
 TEST_F(RevertInRegion, LaterEditsOutsideAreNoConflict) {
   (void)edit([](Patch& patch) {
     for (const auto v : patch.mesh().vertices()) patch.mesh().point(v)[2] += 0.5;
