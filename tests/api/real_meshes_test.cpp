@@ -15,8 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kLargestFile = 6 << 20;
-
 /// What is no triangle mesh of a format that is read, and has to be refused.
 bool must_be_refused(const fs::path& file) {
   const std::string name = file.filename().string();
@@ -30,7 +28,7 @@ std::vector<fs::path> mesh_files() {
       std::string kind = entry.path().extension().string();
       std::transform(kind.begin(), kind.end(), kind.begin(), [](char c) { return static_cast<char>(c | 0x20); });
       const bool is_mesh = kind == ".ply" || kind == ".obj" || kind == ".off" || kind == ".stl" || kind == ".glb";
-      if (is_mesh && entry.file_size() <= kLargestFile) files.push_back(entry.path());
+      if (is_mesh && entry.file_size() <= largest_real_file()) files.push_back(entry.path());
     }
   std::sort(files.begin(), files.end());
   return files;
@@ -225,7 +223,7 @@ void for_each_mesh(const char* done, Check&& check) {
       std::printf("refused: %s\n", e.what());
     }
   }
-  std::printf("%zu of %zu meshes of up to %ju bytes %s\n", taken, files.size(), kLargestFile, done);
+  std::printf("%zu of %zu meshes of up to %ju bytes %s\n", taken, files.size(), largest_real_file(), done);
   EXPECT_GT(taken, 0U);
 }
 

@@ -337,4 +337,13 @@ std::optional<std::filesystem::path> meshes_folder() {
   return std::nullopt;
 }
 
+std::uintmax_t largest_real_file() {
+  if (const char* given = std::getenv("RAMCDB_LARGEST_FILE")) return std::strtoull(given, nullptr, 10);
+#ifdef __SANITIZE_ADDRESS__
+  return 1'000'000;
+#else
+  return 3'000'000;
+#endif
+}
+
 }  // namespace ramcdb::test

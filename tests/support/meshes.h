@@ -56,4 +56,7 @@ struct TestMesh {
 /// The folder of real meshes: $RAMCDB_MESHES, or shared/meshes beside the source tree; none on most machines.
 [[nodiscard]] std::optional<std::filesystem::path> meshes_folder();
 
+/// Larger files of real meshes are left out, bytes: $RAMCDB_LARGEST_FILE, or what all tests together have time for.
+[[nodiscard]] std::uintmax_t largest_real_file();
+
 }  // namespace ramcdb::test

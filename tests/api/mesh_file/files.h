@@ -20,12 +20,6 @@ class GltfBuilder;
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// The corners of a square, as an OBJ file has them.
 inline const std::string kFour = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-/// Real meshes with larger files are left out: the tests of each stay below a minute, sanitizers or not.
-#ifdef __SANITIZE_ADDRESS__
-inline constexpr std::uintmax_t kLargestRealFile = 3'000'000;
-#else
-inline constexpr std::uintmax_t kLargestRealFile = 30'000'000;
-#endif
 
 void write_bytes(const std::filesystem::path& file, std::string_view bytes);
 [[nodiscard]] std::string read_bytes(const std::filesystem::path& file);

@@ -123,7 +123,7 @@ TEST(RealMeshes, CountsAreThoseOfTheTable) {
   std::size_t read = 0;
   for (const auto& [name, counts] : expected) {
     const fs::path file = *folder / name;
-    if (!is_read(file) || !fs::exists(file) || fs::file_size(file) > kLargestRealFile) {
+    if (!is_read(file) || !fs::exists(file) || fs::file_size(file) > largest_real_file()) {
       fmt::print("skipped {}: {}\n", name, is_read(file) ? "missing or too large" : "another format");
       continue;
     }
