@@ -26,7 +26,7 @@ class BatchEncoder {
   NetEntries run() {
     parallel_in_order(
         charts_.batches.size(), charts_.at_a_time, work_.threads, [&](std::size_t b) { return prepare(b); },
-        [&](std::size_t b, const Prepared& prepared) { encode(b, prepared); });
+        [&](std::size_t, const Prepared& prepared) { encode(prepared); }, [&](double) { report(0); });
     return std::move(entries_);
   }
 
@@ -46,11 +46,12 @@ class BatchEncoder {
     return {std::move(batch), std::move(seams), std::move(net)};
   }
 
-  void encode(std::size_t b, const Prepared& prepared) {
-    const auto report = [&](double done) {
-      work_.report("encode", (static_cast<double>(b) + done) / static_cast<double>(charts_.batches.size()));
-    };
-    report(0);
+  /// \param done of the batch that is encoded
+  void report(double done) const {
+    work_.report("encode", (static_cast<double>(encoded_) + done) / static_cast<double>(charts_.batches.size()));
+  }
+
+  void encode(const Prepared& prepared) {
     const auto& [batch, seams, net] = prepared;
     const NetIds ids = ids_for(batch, net, seams);
     std::vector<Point> exact;
@@ -65,8 +66,9 @@ class BatchEncoder {
       return layers.encode(places, encoded);
     };
     const EncodedMesh encoded =
-        encode_part(batch.mesh, net, ids, encode_layers, record_, tables_, work_.threads, report);
+        encode_part(batch.mesh, net, ids, encode_layers, record_, tables_, work_.threads, [&](double d) { report(d); });
     keep(encoded, ids);
+    ++encoded_;
   }
 
   /// Ids of what earlier batches had already, and new ones.
@@ -130,6 +132,7 @@ class BatchEncoder {
   const LargeWork& work_;
   std::vector<WireId> wire_of_seam_;        ///< 0: no batch had it yet
   std::vector<CornerId> corner_of_shared_;  ///< of the net's corners, likewise
+  std::size_t encoded_ = 0;                 ///< batches
   std::uint32_t next_chart_ = 1, next_wire_ = 1, next_corner_ = 1;
   NetEntries entries_;
 };

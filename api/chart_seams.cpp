@@ -69,19 +69,15 @@ class SeamFinder {
   }
 
  private:
-  void report(int pass, std::size_t batch) const {
-    work_.report(kStage, (pass + static_cast<double>(batch) / static_cast<double>(batches_.size())) / 3);
-  }
   [[nodiscard]] ChartBatch load(std::size_t b) const { return load_charts(spool_, batches_[b], points_, lattice_); }
 
   /// Calls take(batch, work(batch)) for one batch after the other; what takes time is done for several at once.
   template <class Work, class Take>
   void for_each_batch(int pass, Work&& work, Take&& take) const {
-    parallel_in_order(batches_.size(), at_a_time_, work_.threads, std::forward<Work>(work),
-                      [&](std::size_t b, auto&& result) {
-                        report(pass, b);
-                        take(static_cast<std::uint32_t>(b), std::move(result));
-                      });
+    parallel_in_order(
+        batches_.size(), at_a_time_, work_.threads, std::forward<Work>(work),
+        [&](std::size_t b, auto&& result) { take(static_cast<std::uint32_t>(b), std::move(result)); },
+        [&](double done) { work_.report(kStage, (pass + done) / 3); });
   }
 
   void find_shared_vertices() {

@@ -1,8 +1,9 @@
 #include "chartify/face_moves.h"
 
+#include <algorithm>
 #include <array>
 #include <mutex>
-#include <tuple>
+#include <utility>
 
 #include "chartify/turns.h"
 
@@ -32,8 +33,9 @@ std::vector<Border> borders_between_charts(const FaceMover& mover, unsigned thre
     for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f)
       for (std::uint32_t e = 0; e < 3; ++e) {
         const std::uint32_t g = mover.neighbour(f, e), chart = mover.chart(f);
-        if (g == kNone || mover.chart(g) == chart) continue;
-        found.push_back({std::min(chart, mover.chart(g)), std::max(chart, mover.chart(g)), f});
+        if (g == kNone || chart == kNone) continue;
+        const std::uint32_t other = mover.chart(g);
+        if (other != kNone && other != chart) found.push_back({std::min(chart, other), std::max(chart, other), f});
       }
     const std::lock_guard lock(mutex);
     entries.insert(entries.end(), found.begin(), found.end());

@@ -56,13 +56,19 @@ inline void parallel_ranges(std::size_t count, unsigned threads,
 }
 
 /// Calls take(i, work(i)) for i = 0 .. count - 1 in this order, on the calling thread; `work` runs on up to `threads`
-/// threads, for up to `held` numbers at a time.
+/// threads, for up to `held` numbers at a time. `progress` as in parallel_for: the share for which work has been done.
 template <class Work, class Take>
-void parallel_in_order(std::size_t count, std::size_t held, unsigned threads, Work&& work, Take&& take) {
+void parallel_in_order(std::size_t count, std::size_t held, unsigned threads, Work&& work, Take&& take,
+                       const std::function<void(double)>& progress) {
   using Result = std::invoke_result_t<Work, std::size_t>;
   for (std::size_t begin = 0; begin < count; begin += held) {
     std::vector<std::optional<Result>> results(std::min(held, count - begin));
-    parallel_for(results.size(), threads, [&](std::size_t i) { results[i].emplace(work(begin + i)); });
+    parallel_for(
+        results.size(), threads, [&](std::size_t i) { results[i].emplace(work(begin + i)); },
+        [&](double done) {
+          progress((static_cast<double>(begin) + done * static_cast<double>(results.size())) /
+                   static_cast<double>(count));
+        });
     for (std::size_t i = 0; i < results.size(); ++i) {
       take(begin + i, std::move(*results[i]));
       results[i].reset();

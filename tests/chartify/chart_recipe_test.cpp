@@ -65,6 +65,27 @@ TEST(FaceMoves, ShortenBordersAndKeepChartsWhole) {
   EXPECT_LT(stage.border(), before * 9 / 10);
 }
 
+TEST(FaceMoves, AreTheSameOnAnyNumberOfThreads) {
+  Stage one(ramcdb::test::scan(40'000), 300), many = one;
+  FaceMover mover(one.twins, one.limits, one.partition), mover_of_many(many.twins, many.limits, many.partition);
+  move_faces(mover, 1);
+  move_faces(mover_of_many, 5);
+  EXPECT_EQ(many.partition.chart_of_face, one.partition.chart_of_face);
+  EXPECT_EQ(many.partition.sizes, one.partition.sizes);
+}
+
+TEST(FaceMoves, LeaveFacesOfNoChartAlone) {
+  Stage stage(ramcdb::test::torus(4000), 300);
+  for (std::uint32_t& chart : stage.partition.chart_of_face)
+    if (chart == 1) chart = kNone;
+  stage.partition.sizes[1] = 0;
+  const auto of_none = [&] { return std::ranges::count(stage.partition.chart_of_face, kNone); };
+  const auto before = of_none();
+  FaceMover mover(stage.twins, stage.limits, stage.partition);
+  move_faces(mover, 2);
+  EXPECT_EQ(of_none(), before);
+}
+
 TEST(Straighten, ShortensBordersAndKeepsChartsWhole) {
   Stage stage(ramcdb::test::scan(40'000), 1000);
   const std::size_t before = stage.border();
