@@ -12,10 +12,14 @@ namespace {
 /// Ids may be left over from other vertices, as where a tool sorted these without them: then places tell more.
 void pair_by_claims(MatchState& state, std::vector<std::uint32_t> ids) {
   if (!ids.empty()) {
+    std::vector<bool> without_id;
+    for (const std::uint32_t v : ids) without_id.push_back(v == kNowhere);
     const VertexClaims by_id(state, std::move(ids));
     const std::uint64_t most = std::min(state.from.face_count(), state.to.face_count());
-    if (by_id.faces() * 2 >= most || by_id.faces() >= VertexClaims(state, claims_by_place(state)).faces())
+    if (by_id.faces() * 2 >= most || by_id.faces() >= VertexClaims(state, claims_by_place(state)).faces()) {
+      state.without_id = std::move(without_id);
       by_id.settle_by_faces(state, true);
+    }
   }
   const VertexClaims by_place(state, claims_by_place(state));
   by_place.settle_by_faces(state, false);

@@ -77,6 +77,9 @@ struct MatchState {
   Places places;
   FaceFinder faces;  ///< of `from`
   VertexPairs pairs;
+  /// Per vertex of `to`: it has no id where ids are to be believed, so that it is new unless it lies where one lay.
+  /// Empty without such ids.
+  std::vector<bool> without_id;
 
   /// Whether a pair contradicts nothing.
   [[nodiscard]] bool can_pair(std::uint32_t v, std::uint32_t w) const {

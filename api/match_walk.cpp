@@ -52,8 +52,9 @@ void MatchWalk::look(std::uint32_t face) {
 
 bool MatchWalk::may_pair(std::uint32_t v, std::uint32_t w) const {
   if (!state_.can_pair(v, w)) return false;
-  return over_ == Over::in_place ? state_.places.from[v] == state_.places.to[w]
-                                 : state_.from_rings.degree(v) == state_.to_rings.degree(w);
+  if (over_ == Over::in_place) return state_.places.from[v] == state_.places.to[w];
+  return state_.from_rings.degree(v) == state_.to_rings.degree(w) &&
+         (state_.without_id.empty() || !state_.without_id[w]);
 }
 
 bool MatchWalk::pair_faces(std::uint32_t face, FaceMatch match) {
@@ -73,18 +74,25 @@ bool MatchWalk::pair_faces(std::uint32_t face, FaceMatch match) {
 }
 
 std::size_t keep_what_fits(MatchState& state, const std::vector<std::uint32_t>& paired) {
+  const auto is_whole = [&](std::uint32_t w) {
+    const std::uint32_t v = state.pairs.from(w);
+    return v != kNowhere && state.from_rings.degree(v) == state.to_rings.degree(w);
+  };
   std::vector<std::uint32_t> position(state.to.points.size(), kNowhere);
   for (std::uint32_t i = 0; i < paired.size(); ++i) position[paired[i]] = i;
   std::vector<std::uint32_t> cycle;
   DisjointSets groups(paired.size());
-  std::vector<Share> shares(paired.size()), of_group(paired.size());
+  std::vector<Share> shares(paired.size()), around(paired.size()), of_group(paired.size());
   for (std::uint32_t g = 0; g < state.to.face_count(); ++g) {
     const auto vertices = state.to.vertices(g);
     const auto first = std::ranges::find_if(vertices, [&](std::uint32_t w) { return position[w] != kNowhere; });
     if (first == vertices.end()) continue;
     const bool survives = state.known_cycle(g, cycle) && state.faces.has(cycle);
+    const auto whole = static_cast<std::uint64_t>(std::ranges::count_if(vertices, is_whole));
     for (auto w = first; w != vertices.end(); ++w) {
       if (position[*w] == kNowhere) continue;
+      around[position[*w]].all += vertices.size() - 1;
+      around[position[*w]].kept += whole - 1;
       ++shares[position[*w]].all;
       shares[position[*w]].kept += survives;
       groups.join(position[*first], position[*w]);
@@ -96,7 +104,7 @@ std::size_t keep_what_fits(MatchState& state, const std::vector<std::uint32_t>& 
   }
   std::size_t kept = 0;
   for (std::uint32_t i = 0; i < paired.size(); ++i)
-    if (of_group[groups.root(i)].at_least(3, 4) && shares[i].at_least(1, 2))
+    if (of_group[groups.root(i)].at_least(3, 4) && shares[i].at_least(1, 2) && around[i].at_least(1, 2))
       ++kept;
     else
       state.pairs.unset(paired[i]);

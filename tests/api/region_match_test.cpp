@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <set>
 #include <string>
 
@@ -335,6 +336,54 @@ TEST(RegionMatch, IdsThatToolsCopiedOrLeftBehind) {
   sorted.shuffle(9);
   for (std::size_t w = 0; w < sorted.ids.size(); ++w) sorted.ids[w] = region.keys[w].packed();
   expect_true(region, sorted, true);
+}
+
+/// A triangle beyond an open edge, whose third vertex, the last of the mesh, is in no other face of the region; charts
+/// that are not in it may have that vertex, too.
+struct Ear {
+  TestMesh mesh = terrain(24, 17);
+  std::array<std::uint32_t, 2> edge{};
+
+  Ear() {
+    std::set<std::array<std::uint32_t, 2>> edges;
+    for (const Triangle& t : mesh.faces)
+      for (std::size_t i = 0; i < 3; ++i) edges.insert({t[i], t[(i + 1) % 3]});
+    edge = *std::ranges::find_if(edges, [&](const auto& e) { return !edges.contains({e[1], e[0]}); });
+    mesh.faces.push_back({edge[1], edge[0], static_cast<std::uint32_t>(mesh.positions.size())});
+    mesh.positions.push_back({2, 3, 4});
+  }
+};
+
+TEST(RegionMatch, AVertexWithoutIdAmongOthersIsNew) {
+  const Ear ear;
+  const RegionMesh region = region_of(ear.mesh);
+  EditedRegion edited(region);
+  edited.points.back().x += 50;
+  expect_all_survive(region, edited, false, false);
+  edited.ids.back() = 0;
+  edited.vertex_was.back() = edited.face_was.back() = kNew;
+  expect_true(region, edited, true);
+}
+
+TEST(RegionMatch, AVertexElsewhereBesideFacesThatWentIsNew) {
+  const Ear ear;
+  const RegionMesh region = region_of(ear.mesh);
+  EditedRegion edited(region);
+  edited.points.back().x += 50;
+  edited.vertex_was.back() = edited.face_was.back() = kNew;
+  // One face stays beside each end of the edge, so that these are known, and not much else.
+  std::vector<bool> gone(region.faces.size() - 1, false);
+  for (const std::uint32_t end : ear.edge) {
+    bool first = true;
+    for (std::uint32_t f = 0; f < gone.size(); ++f) {
+      const Triangle& t = region.faces[f];
+      if (std::ranges::count(t, end) == 0) continue;
+      gone[f] = gone[f] || !first;
+      first = false;
+    }
+  }
+  edited.remove_faces(gone);
+  expect_true(region, edited, false);
 }
 
 TEST(RegionMatch, IsolatedVertices) {

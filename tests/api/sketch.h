@@ -64,7 +64,7 @@ class Sketch {
   }
   [[nodiscard]] bool outer_edges_intact() const { return outer_counts() == outer_before_; }
 
-  /// One random change; `weird` allows those that make non-manifold, degenerate and duplicate places.
+  /// One random change; only with `weird` may it make more places that are not manifold, degenerate or duplicate.
   void change(Random& random, bool weird) {
     if (faces.empty()) return add_grid(random);
     const Sketch before = *this;
@@ -118,7 +118,7 @@ class Sketch {
         (void)add_vertex(somewhere(random), kNew, true);
         break;
     }
-    if (!outer_edges_intact()) *this = before;
+    if (!outer_edges_intact() || (!weird && crowded_edges() > before.crowded_edges())) *this = before;
   }
 
   /// Moves a share of the vertices by a few steps.
@@ -205,6 +205,9 @@ class Sketch {
     for (std::uint32_t f = 0; f < faces.size(); ++f)
       for (std::size_t i = 0; i < 3; ++i) at[key(faces[f][i], faces[f][(i + 1) % 3])].push_back(f);
     return at;
+  }
+  [[nodiscard]] std::ptrdiff_t crowded_edges() const {
+    return std::ranges::count_if(faces_at_edges(), [](const auto& edge) { return edge.second.size() > 2; });
   }
   [[nodiscard]] static bool degenerate(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
