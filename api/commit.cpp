@@ -12,6 +12,7 @@
 
 #include "api/chart_difference.h"
 #include "api/locks.h"
+#include "api/region_query.h"
 #include "api/three_way.h"
 #include "ramcdb/error.h"
 
@@ -141,6 +142,44 @@ ChartId home_in(const PendingEdit& edit, const std::vector<ChartId>& charts) {
   return first == edit.region.charts.end() ? ChartId() : *first;
 }
 
+/// Whether an edit left a vertex of its region where it was, with the values that it had.
+bool is_as_before(const EditedRegion& edited, const RegionMesh& region, std::uint32_t v) {
+  const std::uint32_t source = edited.vertex_source[v];
+  const RegionMesh& mesh = edited.mesh;
+  if (mesh.points[v] != region.points[source]) return false;
+  if (!region.exact.empty() && mesh.exact[v] != region.exact[source]) return false;
+  for (std::size_t a = 0; a < region.attributes.size(); ++a) {
+    const std::size_t n = region.attributes[a].info.components;
+    if (region.attributes[a].info.of == AttributeOf::vertex &&
+        !std::equal(mesh.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(v * n),
+                    mesh.attributes[a].values.begin() + static_cast<std::ptrdiff_t>((v + 1) * n),
+                    region.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(source * n)))
+      return false;
+  }
+  return true;
+}
+
+/// Per vertex of an edit whether it lost its faces there and nothing else happened to it, while charts outside had it
+/// in theirs: it is for those to say whether it stays.
+std::vector<bool> left_to_others(const PendingEdit& edit) {
+  const EditedRegion& edited = edit.edited;
+  std::vector<bool> left(edited.mesh.points.size(), true);
+  for (const Triangle& t : edited.mesh.faces)
+    for (const std::uint32_t v : t) left[v] = false;
+  const auto key_of = [&](std::uint32_t v) { return edit.region.keys[edited.vertex_source[v]]; };
+  CornerPlaces corners;
+  for (std::uint32_t v = 0; v < left.size(); ++v) {
+    left[v] = left[v] && edited.vertex_source[v] != kNew && key_of(v).where == VertexKey::Where::corner &&
+              is_as_before(edited, edit.region, v);
+    if (left[v]) corners.emplace(key_of(v).id, edit.region.points[edited.vertex_source[v]]);
+  }
+  if (corners.empty()) return left;
+  const auto around = charts_at_corners(edit.base(), corners);
+  for (std::uint32_t v = 0; v < left.size(); ++v)
+    left[v] = left[v] && !std::ranges::includes(edit.region.charts, around.at(CornerId(key_of(v).id)));
+  return left;
+}
+
 /// The charts that an edit touches, as a tip has them, and the edit of these: all that it holds, as a rule, of the very
 /// tip.
 EncodedEdit encode_on(const Snapshot::Impl& tip, const PendingEdit& edit, const CommitOptions& options) {
@@ -150,7 +189,7 @@ EncodedEdit encode_on(const Snapshot::Impl& tip, const PendingEdit& edit, const 
     return encode_edit(tip, edit.region, edit.edited, may_recut, options.threads);
   const RegionPart part{&tip, {edit.changes.touched.begin(), edit.changes.touched.end()}};
   RegionMesh region = load_region(std::span(&part, 1), options.threads, nullptr, true);
-  EditedRegion edited = transferred(edit.edited, edit.region, region);
+  EditedRegion edited = transferred(edit.edited, edit.region, region, left_to_others(edit));
   edited.home = home_in(edit, region.charts);
   return encode_edit(tip, std::move(region), std::move(edited), may_recut, options.threads);
 }

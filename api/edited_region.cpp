@@ -137,7 +137,8 @@ EditedRegion unedited(const RegionMesh& region) {
   return edited;
 }
 
-EditedRegion transferred(const EditedRegion& edited, const RegionMesh& from, const RegionMesh& to) {
+EditedRegion transferred(const EditedRegion& edited, const RegionMesh& from, const RegionMesh& to,
+                         const std::vector<bool>& without) {
   const RegionMap map(from, to);
   const RegionMesh& mesh = edited.mesh;
   const auto stays = [&](std::uint32_t f) {
@@ -150,6 +151,7 @@ EditedRegion transferred(const EditedRegion& edited, const RegionMesh& from, con
   Collector out(to);
   std::vector<std::uint32_t> vertex_of(mesh.points.size(), kNew), here(to.points.size(), kNew);
   for (std::uint32_t v = 0; v < mesh.points.size(); ++v) {
+    if (!without.empty() && without[v]) continue;
     const std::uint32_t source = edited.vertex_source[v];
     const std::uint32_t there = source == kNew ? kNew : map.vertices[source];
     if (used[v] ? !wanted[v] && there == kNew : source != kNew && there == kNew) continue;

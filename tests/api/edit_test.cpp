@@ -255,6 +255,49 @@ TEST(Commit, OfDisjointChartsGoesInBesideOthers) {
   EXPECT_EQ(face_set(whole(repository->snapshot())), expected);
 }
 
+/// Takes away the faces of a patch at the vertex that lies at a place; `keeps_vertex`: it stays in the patch.
+void open_at(Patch& patch, const Point& place, bool keeps_vertex) {
+  auto& mesh = patch.mesh();
+  mesh.request_vertex_status();
+  mesh.request_edge_status();
+  mesh.request_face_status();
+  Patch::Mesh::VertexHandle at;
+  for (const auto v : mesh.all_vertices())
+    if (mesh.point(v) == Patch::Mesh::Point(place.x, place.y, place.z)) at = v;
+  std::vector<Patch::Mesh::FaceHandle> faces;
+  for (auto f = mesh.cvf_iter(at); f.is_valid(); ++f) faces.push_back(*f);
+  EXPECT_FALSE(faces.empty());
+  for (const auto f : faces) mesh.delete_face(f, !keeps_vertex);
+}
+
+TEST(Commit, OfBothSidesOfAVertexTakesItAway) {
+  TempRepository repository(hourglass(), 12);
+  const Snapshot before = repository->snapshot();
+  ASSERT_EQ(before.info().charts, 2U) << "one for each side of the vertex";
+  const RegionMesh first = before.read({ChartId(1)}), second = before.read({ChartId(2)});
+  std::vector<LatticePoint> common;
+  for (const LatticePoint p : first.points)
+    if (std::ranges::count(second.points, p)) common.push_back(p);
+  ASSERT_EQ(common.size(), 1U);
+  for (const bool keeps : {false, true}) {
+    const std::string branch = keeps ? "kept" : "dropped";
+    (void)repository->create_branch(branch, "1");
+    auto mine = repository->begin_edit({}, branch), theirs = repository->begin_edit({}, branch);
+    open_at(mine.checkout(charts({1})), before.position(common.front()), keeps);
+    open_at(theirs.checkout(charts({2})), before.position(common.front()), false);
+    CommitOptions options = message("open");
+    options.branch = branch;
+    (void)theirs.commit(options);
+    const MeshInfo halfway = repository->snapshot({}, branch).info();
+    EXPECT_EQ(halfway.vertices, 15U);
+    (void)mine.commit(options);
+    const MeshInfo after = repository->snapshot({}, branch).info();
+    EXPECT_EQ(after.vertices, 14U) << branch;
+    EXPECT_EQ(after.isolated_vertices, 0U) << branch;
+  }
+  EXPECT_TRUE(repository->verify({}).ok());
+}
+
 TEST(Commit, OfTheSameChartIsAConflictAndWritesNothing) {
   TempRepository repository(scan(8000), 300);
   auto mine = repository->begin_edit();
