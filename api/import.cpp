@@ -50,6 +50,7 @@ mesh_file::MeshData read_file_whole(const std::filesystem::path& file, std::opti
                                     std::vector<ImportReport::Dropped>& dropped) {
   mesh_file::MeshData data = mesh_file::read_mesh(file, stage(progress, "read"));
   if (weld.value_or(data.soup)) {
+    begin_stage(progress, "weld");
     const std::size_t before = data.positions.size();
     mesh_file::weld_exact(data);
     welded = before - data.positions.size();
@@ -72,6 +73,7 @@ ImportReport import_in_core(db::Store& store, const std::filesystem::path& file,
   ImportReport report;
   mesh_file::MeshData data =
       read_file_whole(file, options.weld, options.progress, report.vertices_welded, report.dropped);
+  begin_stage(options.progress, "snap");
   const NumberType type = type_of(data.positions);
   MeshRecord record = new_record(choose_lattice(PositionSource::of(data.positions), type, options), type, options);
   std::vector<Point> exact;
@@ -79,11 +81,12 @@ ImportReport import_in_core(db::Store& store, const std::filesystem::path& file,
   Snapping snapping(record.lattice, type);
   std::vector<LatticePoint> points = snap_all(snapping, data);
   report.measured_error = note_error(record, snapping.error(), type);
+  const auto sorting = stage(options.progress, "sort");
   const mesh_file::Triangulation cut = mesh_file::triangulate(data);
   record.polygons = report.polygons = cut.polygons;
   report.polygons_as_fans = cut.fans;
   chartify::CanonicalMesh canonical =
-      chartify::canonical_order({std::move(points), mesh_file::triangles_of(data, cut)}, options.threads);
+      chartify::canonical_order({std::move(points), mesh_file::triangles_of(data, cut)}, options.threads, sorting);
   const LayerSource layers(data, cut, canonical, record, exact, options.lossless || options.lossless_attributes);
   canonical.mesh.polygon_of_face = layers.polygon_of_face();
   record.vertices = canonical.mesh.positions.size();
@@ -100,6 +103,7 @@ ImportReport import_in_core(db::Store& store, const std::filesystem::path& file,
   run_beside(
       options.threads, [&] { note_topology(record, analyze(canonical.mesh, adjacency)); },
       [&] { charts = chartify::chartify(canonical.mesh, adjacency, chartify_options); });
+  begin_stage(options.progress, "join");
   const chartify::WireNet net = chartify::build_wire_net(canonical.mesh, std::move(adjacency), charts, options.threads);
 
   const codec::CoderTables tables = train_tables(net, record.profile, record.vertices);

@@ -28,24 +28,19 @@ void refine(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const N
   split_oversized(mesh, neighbours, limits, partition);
   const BorderStraightener straightener(mesh, twins);
   for (int i = 0; i < kRefinements; ++i) {
-    progress(static_cast<double>(i) / kRefinements);
-    move_faces(mover, threads);
-    straightener.run(limits, partition, nullptr, threads);
+    const auto share = [&](double of_round) { return (i + of_round) / kRefinements; };
+    move_faces(mover, threads, part_of(progress, share(0), share(0.5)));
+    straightener.run(limits, partition, nullptr, threads, part_of(progress, share(0.5), share(1)));
   }
   merge_pieces(neighbours, partition);
 }
 
 Partition refined_charts(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, const Neighbours& neighbours,
                          const Regions& components, const Options& options) {
-  const auto progress = [&](double done) {
-    if (options.progress) options.progress(done);
-  };
-  Partition partition = grow_charts(
-      mesh, neighbours, components, kLloydIterations, [&](double done) { progress(kGrowthShare * done); },
-      options.threads);
-  refine(
-      mesh, twins, neighbours, [&](double done) { progress(kGrowthShare + (1 - kGrowthShare) * done); },
-      SizeLimits(options.target_faces), options.threads, partition);
+  Partition partition = grow_charts(mesh, neighbours, components, kLloydIterations,
+                                    part_of(options.progress, 0, kGrowthShare), options.threads);
+  refine(mesh, twins, neighbours, part_of(options.progress, kGrowthShare, 1), SizeLimits(options.target_faces),
+         options.threads, partition);
   return partition;
 }
 
@@ -64,7 +59,7 @@ Charts charts_of(const IndexedMesh& mesh, const Regions& components, const Optio
   charts.chart_of_isolated_vertex = place_isolated_vertices(mesh, options.target_faces, partition);
   charts.chart_of_face = std::move(partition.chart_of_face);
   charts.chart_count = static_cast<std::uint32_t>(partition.sizes.size());
-  if (options.progress) options.progress(1);
+  report(options.progress, 1);
   return charts;
 }
 
@@ -90,7 +85,9 @@ Charts cut(const IndexedMesh& mesh, const std::vector<HalfEdge>& twins, std::spa
            const Options& options) {
   require_target(options);
   const Neighbours neighbours = find_neighbours(twins);
+  report(options.progress, 0);
   const Regions components = find_components(neighbours, options.target_faces);
+  report(options.progress, 0);
   Partition partition = options.method == Method::paper ? paper_charts(mesh, twins, neighbours, components, options)
                                                         : refined_charts(mesh, twins, neighbours, components, options);
   if (!later.empty()) keep_apart(mesh, components, later, partition);
@@ -141,10 +138,7 @@ Charts refine_cut(const IndexedMesh& mesh, std::vector<std::uint32_t> chart_of_f
   }
   renumber(partition);
   merge_pieces(neighbours, partition);
-  const auto progress = [&](double done) {
-    if (options.progress) options.progress(done);
-  };
-  refine(mesh, twins, neighbours, progress, SizeLimits(options.target_faces), options.threads, partition);
+  refine(mesh, twins, neighbours, options.progress, SizeLimits(options.target_faces), options.threads, partition);
   return charts_of(mesh, components, options, partition);
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
+#include "chartify/progress.h"
 #include "ramcdb/chart.h"
 #include "ramcdb/geometry.h"
 
@@ -34,7 +34,8 @@ struct CanonicalMesh {
 /// face, isolated ones last. The result depends on the geometry only, not on the order or rotation of the input's faces
 /// nor on its vertex order (ties between faces with equal positions are broken by their neighbours' positions, and only
 /// then by input order), nor on the number of threads.
-[[nodiscard]] CanonicalMesh canonical_order(const IndexedMesh& mesh, unsigned threads = 1);
+[[nodiscard]] CanonicalMesh canonical_order(const IndexedMesh& mesh, unsigned threads = 1,
+                                            const Progress& progress = {});
 
 enum class Method {
   refined,  ///< growth, Lloyd, rebalancing, face moves and wire straightening (the default)
@@ -47,8 +48,8 @@ inline constexpr std::uint32_t kMostTargetFaces = 200'000;
 struct Options {
   std::uint32_t target_faces = 5000;  ///< 1 .. kMostTargetFaces
   Method method = Method::refined;
-  unsigned threads = 1;                                 ///< changes the time, never the result
-  std::function<void(double done)> progress = nullptr;  ///< 0..1; may throw to cancel
+  unsigned threads = 1;  ///< changes the time, never the result
+  Progress progress = {};
 };
 
 /// Cuts a mesh into charts. REQUIRES: canonical order. Returns for every face the chart it belongs to, and for every

@@ -153,10 +153,11 @@ class Climber {
 
 }  // namespace
 
-void move_faces(FaceMover& mover, unsigned threads) {
+void move_faces(FaceMover& mover, unsigned threads, const Progress& progress) {
   Touched touched_in(mover.face_count(), 0);
   std::vector<Climber> climbers(std::max(threads, 1U), Climber(mover, touched_in));
   for (std::uint8_t round = 1; round <= kMoveRounds; ++round) {
+    report(progress, (round - 1.0) / kMoveRounds);
     work_in_turns(borders_between_charts(mover, threads), mover.chart_count(), climbers,
                   [&](Climber& climber, const Border& border) { climber.climb_along(border, round); });
     std::int64_t gained = 0;

@@ -174,7 +174,7 @@ Partition grow_charts(const IndexedMesh& mesh, const Neighbours& neighbours, con
   Grower grower(mesh, neighbours, regions, threads);
   grower.grow();
   for (int i = 1; i <= iterations; ++i) {
-    if (progress) progress(static_cast<double>(i) / (iterations + 1));
+    report(progress, static_cast<double>(i) / (iterations + 1));
     grower.move_seeds();
     grower.balance();
     grower.grow();

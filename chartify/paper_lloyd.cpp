@@ -117,7 +117,7 @@ Partition paper_lloyd(const IndexedMesh& mesh, const Neighbours& neighbours, con
   PaperLloyd lloyd(mesh, neighbours, regions);
   lloyd.grow();
   for (int i = 0; i < kMostIterations && lloyd.move_seeds(); ++i) {
-    if (progress) progress(static_cast<double>(i + 1) / (kMostIterations + 1));
+    report(progress, static_cast<double>(i + 1) / (kMostIterations + 1));
     lloyd.grow();
   }
   return lloyd.take();

@@ -47,12 +47,13 @@ inline void parallel_for(std::size_t count, unsigned threads, const std::functio
 }
 
 /// Calls work(begin, end) for ranges that together are 0 .. count - 1, on up to `threads` threads. They are the same
-/// for any number of threads.
+/// for any number of threads. `progress` as in parallel_for.
 inline void parallel_ranges(std::size_t count, unsigned threads,
-                            const std::function<void(std::size_t begin, std::size_t end)>& work) {
+                            const std::function<void(std::size_t begin, std::size_t end)>& work,
+                            const std::function<void(double)>& progress = {}) {
   constexpr std::size_t kRange = 1 << 16;
   parallel_for((count + kRange - 1) / kRange, threads,
-               [&](std::size_t i) { work(i * kRange, std::min(count, (i + 1) * kRange)); });
+               [&](std::size_t i) { work(i * kRange, std::min(count, (i + 1) * kRange)); }, progress);
 }
 
 /// Calls take(i, work(i)) for i = 0 .. count - 1 in this order, on the calling thread; `work` runs on up to `threads`

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "chartify/chartify.h"
@@ -51,8 +50,5 @@ void merge_pieces(const Neighbours& neighbours, Partition& partition);
 
 /// Errors: invalid_argument for a target out of range.
 void require_target(const Options& options);
-
-/// Called between stages with the share that is done; may throw to cancel.
-using Progress = std::function<void(double)>;
 
 }  // namespace ramcdb::chartify

@@ -294,7 +294,7 @@ Recharted rechart(const Rechart& in, const Options& options) {
   require_target(options);
   require_consistent(in);
   Recharted out = Recharter(in, options).run();
-  if (options.progress) options.progress(1);
+  report(options.progress, 1);
   return out;
 }
 

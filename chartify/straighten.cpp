@@ -280,13 +280,15 @@ BorderStraightener::BorderStraightener(const IndexedMesh& mesh, const std::vecto
   mean_length_ = sum / static_cast<double>(twins.size());
 }
 
-void BorderStraightener::run(const SizeLimits& limits, Partition& partition, const MoveRules* rules,
-                             unsigned threads) const {
+void BorderStraightener::run(const SizeLimits& limits, Partition& partition, const MoveRules* rules, unsigned threads,
+                             const Progress& progress) const {
+  report(progress, 0);
   std::vector<Straightener> workers(std::max(threads, 1U),
                                     {mesh_, twins_, fans_, mean_length_, limits, partition, rules});
   const std::vector<std::uint32_t>& chart_of_face = partition.chart_of_face;
-  work_in_turns(between_charts(trace_borders(mesh_, twins_, fans_, chart_of_face), twins_, chart_of_face),
-                partition.sizes.size(), workers,
+  auto borders = between_charts(trace_borders(mesh_, twins_, fans_, chart_of_face), twins_, chart_of_face);
+  report(progress, 0.5);
+  work_in_turns(std::move(borders), partition.sizes.size(), workers,
                 [](Straightener& worker, const BorderBetween& border) { worker.straighten(border); });
 }
 

@@ -2,6 +2,7 @@
 
 #include "chartify/border_paths.h"
 #include "chartify/face_mover.h"
+#include "chartify/progress.h"
 
 namespace ramcdb::chartify {
 
@@ -14,8 +15,8 @@ class BorderStraightener {
 
   /// \param rules which faces may change sides; nullptr: all
   /// \param threads change the time, never the result
-  void run(const SizeLimits& limits, Partition& partition, const MoveRules* rules = nullptr,
-           unsigned threads = 1) const;
+  void run(const SizeLimits& limits, Partition& partition, const MoveRules* rules = nullptr, unsigned threads = 1,
+           const Progress& progress = {}) const;
 
  private:
   const IndexedMesh& mesh_;

@@ -26,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 5> kCommitStages{"read charts", "read file", "match", "encode", "store"};
-constexpr std::array<const char*, 4> kImportStages{"read", "chartify", "encode", "store"};
+constexpr std::array<const char*, 7> kImportStages{"read", "snap", "sort", "chartify", "join", "encode", "store"};
 
 /// Milliseconds of CPU per edit, one value per round.
 struct Samples {
@@ -144,7 +144,9 @@ int run(int argc, char** argv) {
       "Import with {} threads; milliseconds of CPU of all threads by stage.\n\n| mesh | faces | million faces/s |",
       threads);
   for (const char* stage : kImportStages) fmt::print(" {} |", stage);
-  fmt::print("\n|---|---:|---:|---:|---:|---:|---:|\n");
+  fmt::print("\n|---|");
+  for (std::size_t i = 0; i < kImportStages.size() + 2; ++i) fmt::print("---:|");
+  fmt::print("\n");
   std::vector<Row> rows;
   for (const std::string& file : files) {
     const ScratchFolder scratch;
