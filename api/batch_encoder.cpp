@@ -46,6 +46,19 @@ class BatchEncoder {
     return {std::move(batch), std::move(seams), std::move(net)};
   }
 
+  [[nodiscard]] std::vector<Attribute> values_of(const ChartBatch& batch) const {
+    std::vector<Attribute> attributes;
+    for (const mesh_file::AttributeView& view : charts_.attributes) {
+      Attribute& attribute = attributes.emplace_back(Attribute{view.info, {}});
+      const std::size_t components = view.info.components;
+      for (const std::uint32_t v : batch.number) {
+        const auto value = view.values.subspan(v * components, components);
+        attribute.values.insert(attribute.values.end(), value.begin(), value.end());
+      }
+    }
+    return attributes;
+  }
+
   /// \param done of the batch that is encoded
   void report(double done) const {
     work_.report("encode", (static_cast<double>(encoded_) + done) / static_cast<double>(charts_.batches.size()));
@@ -57,8 +70,8 @@ class BatchEncoder {
     std::vector<Point> exact;
     if (record_.exact)
       for (const std::uint32_t v : batch.number) exact.push_back(charts_.points.at(v));
-    const LayerTable no_layers;
-    const LayerEncoder layers(no_layers, record_, {}, exact);
+    const std::vector<Attribute> attributes = values_of(batch);
+    const LayerEncoder layers(charts_.layers, record_, attributes, exact);
     const auto encode_layers = [&](const chartify::NetChart& chart, const codec::EncodedChart& encoded) {
       if (layers.empty()) return std::vector<LayerBlob>();
       LayerPlaces places;

@@ -5,6 +5,7 @@
 #include "api/chart_seams.h"
 #include "api/chart_spool.h"
 #include "api/large_work.h"
+#include "api/layers.h"
 #include "api/mesh_encoder.h"
 #include "api/mesh_record.h"
 #include "api/scratch_file.h"
@@ -19,6 +20,8 @@ struct BatchedCharts {
   std::size_t at_a_time;  ///< how many batches are held
   const ChartSeams& seams;
   const PointFile& points;
+  const LayerTable& layers;
+  mesh_file::AttributeViews attributes;  ///< of the layers, per vertex of `points`
 };
 
 /// Blobs that wait in a temporary file to be put.

@@ -26,8 +26,8 @@ struct EditedRegion {
 
 /// The same edit of another region: of other charts, or of the same ones at another version that left them as they
 /// were. Charts that `to` has in addition stay as they are. REQUIRES: the charts that both have were decoded from equal
-/// blobs; what the edit changes, and what it builds on, is in both. \param without per vertex of the edit, in no face of
-/// it, whether it is left out
+/// blobs; what the edit changes, and what it builds on, is in both. \param without per vertex of the edit, in no face
+/// of it, whether it is left out
 [[nodiscard]] EditedRegion transferred(const EditedRegion& edited, const RegionMesh& from, const RegionMesh& to,
                                        const std::vector<bool>& without = {});
 

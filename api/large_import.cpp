@@ -67,6 +67,15 @@ ChartSpool cut_charts(const MeshSpool& mesh, const MeshRecord& record, const Imp
   return cut_blocks(blocks, mesh.points, record.lattice, sizes, chartify_options, work);
 }
 
+LayerTable layers_of(const MeshSpool& mesh, const ImportOptions& options) {
+  LayerTable table;
+  for (const SpooledAttribute& attribute : mesh.attributes)
+    table.layers.push_back(layer_for(attribute.view(), static_cast<std::uint16_t>(table.layers.size() + 1),
+                                     options.lossless || options.lossless_attributes));
+  table.references = mesh.references;
+  return table;
+}
+
 }  // namespace
 
 ImportReport import_large(db::Store& store, const std::filesystem::path& file, const ImportOptions& options,
@@ -83,13 +92,13 @@ ImportReport import_large(db::Store& store, const std::filesystem::path& file, c
   const ChartSeams seams = find_seams(spool, batches, sizes.at_a_time, mesh.points, record.lattice, work);
   note_topology(record, seams.topology);
 
-  const BatchedCharts charts{spool, batches, sizes.at_a_time, seams, mesh.points};
+  const LayerTable layers = layers_of(mesh, options);
+  BatchedCharts charts{spool, batches, sizes.at_a_time, seams, mesh.points, layers, {}};
+  for (const SpooledAttribute& attribute : mesh.attributes) charts.attributes.push_back(attribute.view());
   const codec::CoderTables tables = train_tables(charts, record);
   if (!(tables == codec::CoderTables{})) record.table = record.next_table;
   BlobSpool blobs(work.folder);
   const NetEntries entries = encode_batches(charts, tables, record, blobs, work);
-  LayerTable layers;
-  layers.references = mesh.references;
   publish_mesh(store, {name, file, options}, {entries, record.table ? codec::encode_tables(tables) : Buffer(), layers},
                record, [&](db::Writer& writer, MeshId id) { blobs.put_all(writer, id, work); });
   return report;

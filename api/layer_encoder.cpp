@@ -32,14 +32,15 @@ codec::Polygons polygons_of(const LayerPlaces& places) {
 
 }  // namespace
 
-codec::LayerValues LayerEncoder::values(const Layer& layer, const Attribute& attribute, const LayerPlaces& places) {
+codec::LayerValues LayerEncoder::values(const Layer& layer, const mesh_file::AttributeView& attribute,
+                                        const LayerPlaces& places) {
   const std::size_t components = layer.info.components, numbers = layer.shape().components;
   const auto& source = places.of(layer.info.of);
   codec::LayerValues values;
   values.numbers.resize(source.size() * numbers);
   values.absent.resize(source.size());
   for (std::size_t i = 0; i < source.size(); ++i)
-    values.absent[i] = !to_numbers(layer, std::span(attribute.values).subspan(source[i] * components, components),
+    values.absent[i] = !to_numbers(layer, attribute.values.subspan(source[i] * components, components),
                                    std::span(values.numbers).subspan(i * numbers, numbers));
   return values;
 }

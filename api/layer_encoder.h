@@ -1,9 +1,11 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "api/layers.h"
+#include "api/mesh_file/mesh_file.h"
 #include "api/mesh_record.h"
 #include "codec/chart_codec.h"
 #include "codec/polygon_codec.h"
@@ -28,12 +30,12 @@ struct LayerBlob {
 /// Codes the layers of charts from the values of the mesh that they are cut from.
 class LayerEncoder {
  public:
-  /// All must outlive the encoder.
+  /// All must outlive the encoder, and what the attributes view.
   /// \param attributes those of `table`'s layers, in their order
   /// \param exact positions of the mesh's vertices where `record` says that they are kept to the last bit; else empty
-  LayerEncoder(const LayerTable& table, const MeshRecord& record, std::span<const Attribute> attributes,
+  LayerEncoder(const LayerTable& table, const MeshRecord& record, mesh_file::AttributeViews attributes,
                std::span<const Point> exact)
-      : table_(table), record_(record), attributes_(attributes), exact_(exact) {}
+      : table_(table), record_(record), attributes_(std::move(attributes)), exact_(exact) {}
 
   [[nodiscard]] bool empty() const { return table_.layers.empty() && !record_.exact; }
   /// The layer blobs of a chart, ascending. Charts of triangles alone need none for polygons.
@@ -41,12 +43,12 @@ class LayerEncoder {
 
  private:
   [[nodiscard]] Buffer exact(const codec::EncodedChart& encoded, const LayerPlaces& places) const;
-  [[nodiscard]] static codec::LayerValues values(const Layer& layer, const Attribute& attribute,
+  [[nodiscard]] static codec::LayerValues values(const Layer& layer, const mesh_file::AttributeView& attribute,
                                                  const LayerPlaces& places);
 
   const LayerTable& table_;
   const MeshRecord& record_;
-  std::span<const Attribute> attributes_;
+  mesh_file::AttributeViews attributes_;
   std::span<const Point> exact_;
 };
 

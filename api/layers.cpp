@@ -107,10 +107,10 @@ bool is_absent(std::span<const double> value) {
 
 /// Whether `fits` holds for each value that is there.
 template <class Fits>
-bool all_values(const Attribute& attribute, const Fits& fits) {
+bool all_values(const mesh_file::AttributeView& attribute, const Fits& fits) {
   const std::size_t components = attribute.info.components;
   for (std::size_t i = 0; i + components <= attribute.values.size(); i += components) {
-    const auto value = std::span(attribute.values).subspan(i, components);
+    const auto value = attribute.values.subspan(i, components);
     if (!is_absent(value) && !fits(value)) return false;
   }
   return true;
@@ -245,7 +245,7 @@ LayerTable decode_layer_table(Bytes blob, std::string_view where) {
   }
 }
 
-Layer layer_for(const Attribute& attribute, std::uint16_t id, bool lossless) {
+Layer layer_for(const mesh_file::AttributeView& attribute, std::uint16_t id, bool lossless) {
   Layer layer{id, attribute.info, LayerCoding::integer, 0};
   if (!is_float(attribute.info.type)) return layer;
   layer.coding = LayerCoding::float_bits;

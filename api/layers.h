@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "api/mesh_file/mesh_file.h"
 #include "codec/layer_codec.h"
 #include "ramcdb/attributes.h"
 #include "ramcdb/bytes.h"
@@ -53,7 +54,7 @@ struct LayerTable {
 /// The layer that an attribute is stored as, unless `lossless` or it cannot hold the numbers: normals of length 1 as
 /// directions; other floats that programs compute with (colours, normals, texture coordinates) on a grid; all else
 /// without loss.
-[[nodiscard]] Layer layer_for(const Attribute& attribute, std::uint16_t id, bool lossless);
+[[nodiscard]] Layer layer_for(const mesh_file::AttributeView& attribute, std::uint16_t id, bool lossless);
 
 /// One value of an attribute as a layer codes it: `numbers` gets shape().components of them. False when it is absent.
 /// Numbers that the layer cannot hold (not whole, out of range) throw invalid_argument naming the attribute.

@@ -14,14 +14,23 @@ class PieceSpooler : public mesh_file::MeshSink {
   PieceSpooler(MeshSpool& to, std::string file) : to_(to), file_(std::move(file)) {}
 
   void take(mesh_file::MeshData& piece) override {
-    if (!piece.attributes.empty()) throw mesh_file::NotInPieces("a mesh with attributes", file_);
     if (!piece.face_sizes.empty()) throw mesh_file::NotInPieces("a mesh with polygons", file_);
+    take_values(piece.attributes);
     to_.points.add(piece.positions);
     for (std::size_t c = 0; c < piece.corners.size(); c += 3)
       to_.faces.add({piece.corners[c], piece.corners[c + 1], piece.corners[c + 2]});
   }
 
  private:
+  void take_values(const std::vector<Attribute>& attributes) {
+    for (std::size_t a = 0; a < attributes.size(); ++a) {
+      if (attributes[a].info.of != AttributeOf::vertex)
+        throw mesh_file::NotInPieces("a mesh with attributes of faces or corners", file_);
+      if (a == to_.attributes.size()) to_.attributes.emplace_back(attributes[a].info, to_.folder);
+      to_.attributes[a].add(attributes[a].values);
+    }
+  }
+
   MeshSpool& to_;
   std::string file_;
 };
@@ -76,6 +85,10 @@ void weld(MeshSpool& mesh, const LargeWork& work) {
   });
   const ScratchView view = firsts.view();
   const auto first = view.as<std::uint32_t>();
+  for (SpooledAttribute& attribute : mesh.attributes) {
+    work.report("weld", 0.6);
+    attribute.join(first);
+  }
   mesh.faces.replace([&, seen = 0](Triangle& t) mutable {
     if (++seen % kSome == 0) work.report("weld", 0.7);
     t = {first[t[0]], first[t[1]], first[t[2]]};
@@ -84,11 +97,26 @@ void weld(MeshSpool& mesh, const LargeWork& work) {
 
 }  // namespace
 
+void SpooledAttribute::finish() {
+  values_.flush();
+  view_.emplace(values_.view());
+}
+
+void SpooledAttribute::join(std::span<const std::uint32_t> first_of_vertex) {
+  const std::size_t components = info_.components;
+  const auto before = view_->as<double>();
+  values_.replace([&, i = std::size_t{0}](double& value) mutable {
+    value = before[first_of_vertex[i / components] * components + i % components];
+    ++i;
+  });
+}
+
 MeshSpool spool_mesh(const std::filesystem::path& file, std::optional<bool> weld_points, const LargeWork& work) {
   MeshSpool mesh(work.folder);
   PieceSpooler spooler(mesh, file.string());
   mesh_file::MeshData rest = mesh_file::read_in_pieces(file, spooler, [&](double done) { work.report("read", done); });
   mesh.points.finish();
+  for (SpooledAttribute& attribute : mesh.attributes) attribute.finish();
   mesh.faces.flush();
   mesh.references = std::move(rest.references);
   mesh.dropped = std::move(rest.dropped);

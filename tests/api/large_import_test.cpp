@@ -223,6 +223,64 @@ TEST(LargeImport, TakesEveryFormatThatIsReadInPieces) {
   EXPECT_THAT(imports.problems(), testing::IsEmpty());
 }
 
+/// Per vertex its place and its values.
+std::vector<std::vector<double>> painted_vertices(const Snapshot& snapshot) {
+  const RegionMesh mesh = snapshot.read_with_attributes(snapshot.find({{WholeMesh{}}, 0}));
+  std::vector<std::vector<double>> vertices;
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    const LatticePoint p = mesh.points[v];
+    vertices.push_back({double(p.x), double(p.y), double(p.z)});
+    for (const Attribute& attribute : mesh.attributes)
+      for (std::size_t k = 0; k < attribute.info.components; ++k)
+        vertices.back().push_back(attribute.values[v * attribute.info.components + k]);
+  }
+  std::ranges::sort(vertices);
+  return vertices;
+}
+
+mesh_file::MeshData painted_scan(std::size_t faces) {
+  const TestMesh mesh = scan(faces);
+  mesh_file::MeshData data;
+  data.positions = mesh.positions;
+  for (const Triangle& t : mesh.faces) data.corners.insert(data.corners.end(), t.begin(), t.end());
+  Attribute color{{"color", AttributeOf::vertex, NumberType::uint8, 3, Meaning::color, {}, {}}, {}};
+  Attribute normal{{"normal", AttributeOf::vertex, NumberType::float32, 3, Meaning::normal, {}, {}}, {}};
+  Attribute quality{{"quality", AttributeOf::vertex, NumberType::float64, 1, Meaning::other, {}, {}}, {}};
+  for (std::size_t v = 0; v < data.positions.size(); ++v) {
+    const double number = static_cast<double>(v);
+    color.values.insert(color.values.end(), {double(v % 256), double(v / 256 % 256), double(v / 65536)});
+    normal.values.insert(normal.values.end(), {double{0.6F}, 0.0, v % 2 ? double{0.8F} : -double{0.8F}});
+    quality.values.push_back(number / 3);
+  }
+  data.attributes = {color, normal, quality};
+  return data;
+}
+
+TEST(LargeImport, KeepsAttributesOfVertices) {
+  for (const char* file : {"painted.ply", "welded.ply"}) {
+    const Imports imports;
+    mesh_file::MeshData data = painted_scan(8000);
+    const bool weld = std::string_view(file) == "welded.ply";
+    if (weld)  // a vertex twice with other values: those of the first stay
+      for (const std::uint32_t v : {5U, 70U}) {
+        data.corners[data.corners.size() - v] = static_cast<std::uint32_t>(data.positions.size());
+        data.positions.push_back(data.positions[data.corners[v]]);
+        for (Attribute& attribute : data.attributes)
+          for (std::size_t k = 0; k < attribute.info.components; ++k) attribute.values.push_back(double(k));
+      }
+    write_data(data, imports / file);
+    for (const auto& [name, memory] : {std::pair("large", std::optional(kLittle)), {"core", std::nullopt}}) {
+      const ImportReport report =
+          imports.import(file, name, memory, [&](ImportOptions& options) { options.weld = weld; });
+      ASSERT_EQ(report.info.attributes.size(), 3U);
+      EXPECT_EQ(report.info.attributes[2].info, data.attributes[2].info);
+    }
+    EXPECT_EQ(painted_vertices(imports.repository().snapshot("large")),
+              painted_vertices(imports.repository().snapshot("core")));
+    EXPECT_THAT(imports.problems(), testing::IsEmpty());
+  }
+}
+
 TEST(LargeImport, KeepsPositionsToTheLastBit) {
   for (const bool wide : {false, true}) {
     const Imports imports;
@@ -256,9 +314,9 @@ TEST(LargeImport, RefusesWhatItCannotTakeUnlessMemoryIsLeftOpen) {
   std::ofstream(imports / "group.obj") << "v 0 0 0\nv 1 0 0\nv 1 1 0\ng left\nf 1 2 3\n";
   std::ofstream(imports / "color.ply")
       << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-         "property float z\nproperty uchar red\nelement face 1\n"
-         "property list uchar int vertex_indices\nend_header\n"
-         "0 0 0 1\n1 0 0 2\n1 1 0 3\n3 0 1 2\n";
+         "property float z\nelement face 1\n"
+         "property list uchar int vertex_indices\nproperty uchar red\nend_header\n"
+         "0 0 0\n1 0 0\n1 1 0\n3 0 1 2 9\n";
   for (const char* file : {"quad.obj", "group.obj", "color.ply"}) {
     EXPECT_THAT(text_of_error([&] { (void)imports.import(file, file, 1); }), testing::HasSubstr("--memory")) << file;
     EXPECT_EQ(text_of_error([&] { (void)imports.import(file, file, {}); }), "") << file;
