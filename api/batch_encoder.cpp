@@ -1,6 +1,7 @@
 #include "api/batch_encoder.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "api/layer_encoder.h"
 #include "api/new_mesh.h"
@@ -21,7 +22,9 @@ class BatchEncoder {
         blobs_(blobs),
         work_(work),
         wire_of_seam_(charts.seams.net.wires.size()),
-        corner_of_shared_(charts.seams.net.corners.size()) {}
+        corner_of_shared_(charts.seams.net.corners.size()) {
+    if (!charts.layers.empty()) triangles_.emplace(charts.mesh.faces().view());
+  }
 
   NetEntries run() {
     parallel_in_order(
@@ -38,7 +41,7 @@ class BatchEncoder {
   };
 
   [[nodiscard]] Prepared prepare(std::size_t b) const {
-    ChartBatch batch = load_charts(charts_.spool, charts_.batches[b], charts_.points, record_.lattice);
+    ChartBatch batch = load_charts(charts_.spool, charts_.batches[b], charts_.mesh, record_.lattice);
     const auto shared = charts_.seams.shared_in(batch);
     auto seams =
         chartify::seams_of({batch.mesh, batch.charts, batch.number, shared}, charts_.seams.net, charts_.seams.wires[b]);
@@ -46,9 +49,11 @@ class BatchEncoder {
     return {std::move(batch), std::move(seams), std::move(net)};
   }
 
-  [[nodiscard]] std::vector<Attribute> values_of(const ChartBatch& batch) const {
+  [[nodiscard]] std::vector<Attribute> values_of_vertices(const ChartBatch& batch) const {
     std::vector<Attribute> attributes;
-    for (const mesh_file::AttributeView& view : charts_.attributes) {
+    for (const SpooledAttribute& spooled : charts_.mesh.attributes) {
+      const mesh_file::AttributeView view = spooled.view();
+      if (view.info.of != AttributeOf::vertex) continue;
       Attribute& attribute = attributes.emplace_back(Attribute{view.info, {}});
       const std::size_t components = view.info.components;
       for (const std::uint32_t v : batch.number) {
@@ -57,6 +62,47 @@ class BatchEncoder {
       }
     }
     return attributes;
+  }
+
+  /// Those of vertices count as in the batch, all others as in the file.
+  [[nodiscard]] mesh_file::AttributeViews attributes_with(const std::vector<Attribute>& of_vertices) const {
+    mesh_file::AttributeViews views;
+    auto of_vertex = of_vertices.begin();
+    for (const SpooledAttribute& attribute : charts_.mesh.attributes) {
+      if (attribute.info().of == AttributeOf::vertex)
+        views.emplace_back(*of_vertex++);
+      else
+        views.push_back(attribute.view());
+    }
+    return views;
+  }
+
+  [[nodiscard]] LayerPlaces places_of(const ChartBatch& batch, const chartify::NetChart& chart,
+                                      const codec::EncodedChart& encoded) const {
+    LayerPlaces places;
+    for (const std::uint32_t v : encoded.source_vertex) places.vertices.push_back(chart.mesh_vertex[v]);
+    for (const std::uint32_t corner : encoded.source_corner) {
+      const std::uint32_t face = chart.mesh_face[corner / 3];
+      if (!triangles_) continue;  // nothing but exact positions
+      const TriangleSource source = charts_.mesh.source(batch.face[face]);
+      const std::uint32_t turn = turn_in_file(batch, face);
+      places.faces.push_back(source.face);
+      for (std::uint32_t i = 0; i < 3; ++i) places.corners.push_back(source.corners[(corner + i + turn) % 3]);
+    }
+    return places;
+  }
+
+  /// Corner i of a face is corner (i + turn) % 3 of its triangle.
+  [[nodiscard]] std::uint32_t turn_in_file(const ChartBatch& batch, std::uint32_t face) const {
+    const Triangle& triangle = triangles_->as<Triangle>()[batch.face[face]];
+    const auto is_turned = [&](std::uint32_t turn) {
+      for (std::uint32_t i = 0; i < 3; ++i)
+        if (batch.number[batch.mesh.faces[face][i]] != triangle[(i + turn) % 3]) return false;
+      return true;
+    };
+    std::uint32_t turn = 0;
+    while (turn < 2 && !is_turned(turn)) ++turn;
+    return turn;
   }
 
   /// \param done of the batch that is encoded
@@ -69,14 +115,11 @@ class BatchEncoder {
     const NetIds ids = ids_for(batch, net, seams);
     std::vector<Point> exact;
     if (record_.exact)
-      for (const std::uint32_t v : batch.number) exact.push_back(charts_.points.at(v));
-    const std::vector<Attribute> attributes = values_of(batch);
-    const LayerEncoder layers(charts_.layers, record_, attributes, exact);
+      for (const std::uint32_t v : batch.number) exact.push_back(charts_.mesh.points.at(v));
+    const std::vector<Attribute> of_vertices = values_of_vertices(batch);
+    const LayerEncoder layers(charts_.layers, record_, attributes_with(of_vertices), exact);
     const auto encode_layers = [&](const chartify::NetChart& chart, const codec::EncodedChart& encoded) {
-      if (layers.empty()) return std::vector<LayerBlob>();
-      LayerPlaces places;
-      for (const std::uint32_t v : encoded.source_vertex) places.vertices.push_back(chart.mesh_vertex[v]);
-      return layers.encode(places, encoded);
+      return layers.empty() ? std::vector<LayerBlob>() : layers.encode(places_of(batch, chart, encoded), encoded);
     };
     const EncodedMesh encoded =
         encode_part(batch.mesh, net, ids, encode_layers, record_, tables_, work_.threads, [&](double d) { report(d); });
@@ -143,6 +186,7 @@ class BatchEncoder {
   MeshRecord& record_;
   BlobSpool& blobs_;
   const LargeWork& work_;
+  std::optional<ScratchView> triangles_;    ///< of the mesh, where there are layers
   std::vector<WireId> wire_of_seam_;        ///< 0: no batch had it yet
   std::vector<CornerId> corner_of_shared_;  ///< of the net's corners, likewise
   std::size_t encoded_ = 0;                 ///< batches
@@ -167,7 +211,7 @@ void BlobSpool::put_all(db::Writer& writer, MeshId mesh, const LargeWork& work) 
 codec::CoderTables train_tables(const BatchedCharts& charts, const MeshRecord& record) {
   std::vector<std::size_t> which;
   for (std::size_t c = 0; c < charts.spool.count(); c += training_step(record.vertices)) which.push_back(c);
-  const ChartBatch sample = load_charts(charts.spool, which, charts.points, record.lattice);
+  const ChartBatch sample = load_charts(charts.spool, which, charts.mesh, record.lattice);
   const chartify::WireNet net = chartify::build_wire_net(sample.mesh, sample.charts);
   std::vector<const Chart*> samples;
   for (const chartify::NetChart& chart : net.charts) samples.push_back(&chart.chart);

@@ -19,9 +19,8 @@ struct BatchedCharts {
   const std::vector<ChartSpool::Batch>& batches;
   std::size_t at_a_time;  ///< how many batches are held
   const ChartSeams& seams;
-  const PointFile& points;
+  const MeshSpool& mesh;
   const LayerTable& layers;
-  mesh_file::AttributeViews attributes;  ///< of the layers, per vertex of `points`
 };
 
 /// Blobs that wait in a temporary file to be put.

@@ -33,10 +33,10 @@ struct CutBlock {
 
 class Cutter {
  public:
-  Cutter(const FaceBlocks& blocks, const PointFile& points, const Lattice& lattice, PartSizes sizes,
+  Cutter(const FaceBlocks& blocks, const MeshSpool& mesh, const Lattice& lattice, PartSizes sizes,
          const chartify::Options& options, const LargeWork& work)
       : blocks_(blocks),
-        points_(points),
+        mesh_(mesh),
         lattice_(lattice),
         sizes_(sizes),
         options_(options),
@@ -118,7 +118,7 @@ class Cutter {
     VertexRanks ranks(corners);
     block.vertices = std::move(ranks.vertices);
     chartify::IndexedMesh mesh;
-    for (const std::uint32_t v : block.vertices) mesh.positions.push_back(lattice_.snap(points_.at(v)));
+    for (const std::uint32_t v : block.vertices) mesh.positions.push_back(lattice_.snap(mesh_.points.at(v)));
     std::vector<std::uint32_t> place_of_vertex;
     auto rank = ranks.rank.begin();
     for (std::uint32_t f = 0; f < block.faces.size(); ++f) {
@@ -133,6 +133,9 @@ class Cutter {
       }
     }
     block.mesh = chartify::canonical_order(mesh);
+    std::vector<std::uint32_t> triangles;
+    for (const std::uint32_t f : block.mesh.source_face) triangles.push_back(block.faces[block.of_mesh[f]].face);
+    block.mesh.mesh.polygon_of_face = mesh_.polygons_of(triangles);
     if (place_of_vertex.empty()) return;
     for (const std::uint32_t v : block.mesh.source_vertex)  // isolated ones come last, in their order
       if (place_of_vertex[v] != kNone) block.of_isolated.push_back(place_of_vertex[v]);
@@ -230,7 +233,7 @@ class Cutter {
   };
 
   const FaceBlocks& blocks_;
-  const PointFile& points_;
+  const MeshSpool& mesh_;
   const Lattice& lattice_;
   PartSizes sizes_;
   chartify::Options options_;
@@ -247,9 +250,9 @@ class Cutter {
 
 }  // namespace
 
-ChartSpool cut_blocks(const FaceBlocks& blocks, const PointFile& points, const Lattice& lattice, PartSizes sizes,
+ChartSpool cut_blocks(const FaceBlocks& blocks, const MeshSpool& mesh, const Lattice& lattice, PartSizes sizes,
                       const chartify::Options& options, const LargeWork& work) {
-  return Cutter(blocks, points, lattice, sizes, options, work).run();
+  return Cutter(blocks, mesh, lattice, sizes, options, work).run();
 }
 
 }  // namespace ramcdb::detail

@@ -21,20 +21,37 @@ struct EdgeOfBatch {
 };
 
 /// Faces at shared vertices, by vertices of the whole mesh.
-std::vector<Triangle> faces_around(const ChartBatch& batch, const std::vector<std::uint8_t>& shared) {
+struct Surroundings {
   std::vector<Triangle> faces;
-  for (const Triangle& t : batch.mesh.faces)
-    if (shared[t[0]] || shared[t[1]] || shared[t[2]])
-      faces.push_back({batch.number[t[0]], batch.number[t[1]], batch.number[t[2]]});
-  return faces;
+  std::vector<std::uint32_t> triangles;  ///< their numbers in MeshSpool::faces()
+};
+
+/// With all triangles of their polygons.
+Surroundings faces_around(const ChartBatch& batch, const std::vector<std::uint8_t>& shared) {
+  const std::vector<std::uint32_t>& polygons = batch.mesh.polygon_of_face;
+  const auto is_shared = [&](const Triangle& t) { return shared[t[0]] || shared[t[1]] || shared[t[2]]; };
+  std::vector<bool> around(polygons.size(), false);
+  for (std::size_t f = 0; f < polygons.size(); ++f)
+    if (is_shared(batch.mesh.faces[f])) around[polygons[f]] = true;
+  Surroundings found;
+  for (std::size_t f = 0; f < batch.mesh.faces.size(); ++f) {
+    const Triangle& t = batch.mesh.faces[f];
+    if (polygons.empty() ? !is_shared(t) : !around[polygons[f]]) continue;
+    found.faces.push_back({batch.number[t[0]], batch.number[t[1]], batch.number[t[2]]});
+    found.triangles.push_back(batch.face[f]);
+  }
+  return found;
 }
 
 /// The faces around all shared vertices, as a mesh of their own.
 class SharedSurroundings {
  public:
-  void add(const std::vector<Triangle>& faces) { faces_.insert(faces_.end(), faces.begin(), faces.end()); }
+  void add(const Surroundings& more) {
+    faces_.insert(faces_.end(), more.faces.begin(), more.faces.end());
+    triangles_.insert(triangles_.end(), more.triangles.begin(), more.triangles.end());
+  }
 
-  [[nodiscard]] Topology analyze(const SharedVertices& shared) {
+  [[nodiscard]] Topology analyze(const SharedVertices& shared, const MeshSpool& of) {
     std::vector<std::uint32_t> corners;
     for (const Triangle& t : faces_) corners.insert(corners.end(), t.begin(), t.end());
     const VertexRanks ranks(corners);
@@ -43,19 +60,21 @@ class SharedSurroundings {
       for (std::uint32_t& v : t) v = *rank++;
     std::vector<std::uint8_t> is_shared(ranks.vertices.size(), 0);
     for_each_shared(ranks.vertices, shared, [&](std::size_t v, std::size_t) { is_shared[v] = 1; });
-    chartify::IndexedMesh mesh{std::vector<LatticePoint>(ranks.vertices.size()), std::move(faces_)};
+    chartify::IndexedMesh mesh{std::vector<LatticePoint>(ranks.vertices.size()), std::move(faces_),
+                               of.polygons_of(triangles_)};
     return analyze_shared(mesh, is_shared);
   }
 
  private:
   std::vector<Triangle> faces_;  ///< by vertices of the whole mesh
+  std::vector<std::uint32_t> triangles_;
 };
 
 class SeamFinder {
  public:
   SeamFinder(const ChartSpool& spool, const std::vector<ChartSpool::Batch>& batches, std::size_t at_a_time,
-             const PointFile& points, const Lattice& lattice, const LargeWork& work)
-      : spool_(spool), batches_(batches), at_a_time_(at_a_time), points_(points), lattice_(lattice), work_(work) {}
+             const MeshSpool& mesh, const Lattice& lattice, const LargeWork& work)
+      : spool_(spool), batches_(batches), at_a_time_(at_a_time), mesh_(mesh), lattice_(lattice), work_(work) {}
 
   ChartSeams run() {
     out_.wires.resize(batches_.size());
@@ -69,7 +88,7 @@ class SeamFinder {
   }
 
  private:
-  [[nodiscard]] ChartBatch load(std::size_t b) const { return load_charts(spool_, batches_[b], points_, lattice_); }
+  [[nodiscard]] ChartBatch load(std::size_t b) const { return load_charts(spool_, batches_[b], mesh_, lattice_); }
 
   /// Calls take(batch, work(batch)) for one batch after the other; what takes time is done for several at once.
   template <class Work, class Take>
@@ -122,7 +141,7 @@ class SeamFinder {
   /// What a batch alone knows of its end.
   struct BatchEnds {
     Topology topology;
-    std::vector<Triangle> surroundings;
+    Surroundings surroundings;
     chartify::SharedEnds ends;
   };
 
@@ -148,9 +167,9 @@ class SeamFinder {
           ends.corners.insert(ends.corners.end(), found.ends.corners.begin(), found.ends.corners.end());
         });
     if (batches_.size() == 1) return;
-    out_.topology += surroundings.analyze(out_.shared);
-    out_.net =
-        chartify::join_seams(seams_, std::move(ends), [&](std::uint32_t v) { return lattice_.snap(points_.at(v)); });
+    out_.topology += surroundings.analyze(out_.shared, mesh_);
+    out_.net = chartify::join_seams(seams_, std::move(ends),
+                                    [&](std::uint32_t v) { return lattice_.snap(mesh_.points.at(v)); });
     for (std::uint32_t w = 0; w < out_.net.wires.size(); ++w)
       for (const std::uint32_t b : out_.net.wires[w].parts) out_.wires[b].push_back(w);
   }
@@ -158,7 +177,7 @@ class SeamFinder {
   const ChartSpool& spool_;
   const std::vector<ChartSpool::Batch>& batches_;
   std::size_t at_a_time_;
-  const PointFile& points_;
+  const MeshSpool& mesh_;
   const Lattice& lattice_;
   const LargeWork& work_;
   std::vector<chartify::Seam> seams_;
@@ -176,8 +195,8 @@ std::vector<std::uint8_t> ChartSeams::shared_in(const ChartBatch& batch) const {
 }
 
 ChartSeams find_seams(const ChartSpool& spool, const std::vector<ChartSpool::Batch>& batches, std::size_t at_a_time,
-                      const PointFile& points, const Lattice& lattice, const LargeWork& work) {
-  return SeamFinder(spool, batches, at_a_time, points, lattice, work).run();
+                      const MeshSpool& mesh, const Lattice& lattice, const LargeWork& work) {
+  return SeamFinder(spool, batches, at_a_time, mesh, lattice, work).run();
 }
 
 }  // namespace ramcdb::detail

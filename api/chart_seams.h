@@ -24,7 +24,7 @@ struct ChartSeams {
 
 /// \param at_a_time how many batches are held
 [[nodiscard]] ChartSeams find_seams(const ChartSpool& spool, const std::vector<ChartSpool::Batch>& batches,
-                                    std::size_t at_a_time, const PointFile& points, const Lattice& lattice,
+                                    std::size_t at_a_time, const MeshSpool& mesh, const Lattice& lattice,
                                     const LargeWork& work);
 
 }  // namespace ramcdb::detail

@@ -42,7 +42,7 @@ std::vector<ChartSpool::Batch> ChartSpool::batches(std::uint64_t faces) const {
   return batches;
 }
 
-ChartBatch load_charts(const ChartSpool& spool, std::span<const std::size_t> which, const PointFile& points,
+ChartBatch load_charts(const ChartSpool& spool, std::span<const std::size_t> which, const MeshSpool& of,
                        const Lattice& lattice) {
   std::vector<SpooledChart> charts;
   std::vector<std::uint32_t> named;  // of all charts those in faces first
@@ -74,15 +74,16 @@ ChartBatch load_charts(const ChartSpool& spool, std::span<const std::size_t> whi
     first += charts[c].vertices.size() - charts[c].isolated;
     batch.charts.chart_of_isolated_vertex.insert(batch.charts.chart_of_isolated_vertex.end(), charts[c].isolated, c);
   }
-  for (const std::uint32_t v : batch.number) batch.mesh.positions.push_back(lattice.snap(points.at(v)));
+  for (const std::uint32_t v : batch.number) batch.mesh.positions.push_back(lattice.snap(of.points.at(v)));
+  batch.mesh.polygon_of_face = of.polygons_of(batch.face);
   return batch;
 }
 
-ChartBatch load_charts(const ChartSpool& spool, const ChartSpool::Batch& batch, const PointFile& points,
+ChartBatch load_charts(const ChartSpool& spool, const ChartSpool::Batch& batch, const MeshSpool& of,
                        const Lattice& lattice) {
   std::vector<std::size_t> which(batch.last - batch.first);
   std::iota(which.begin(), which.end(), batch.first);
-  return load_charts(spool, which, points, lattice);
+  return load_charts(spool, which, of, lattice);
 }
 
 }  // namespace ramcdb::detail

@@ -14,7 +14,7 @@ namespace ramcdb::detail {
 /// A face of a chart by its vertices in the chart.
 struct ChartFace {
   Triangle corners{};
-  std::uint32_t face = 0;  ///< in the file
+  std::uint32_t face = 0;  ///< its number in MeshSpool::faces()
 };
 
 /// A chart for itself.
@@ -61,12 +61,12 @@ struct ChartBatch {
   chartify::IndexedMesh mesh;
   chartify::Charts charts;
   std::vector<std::uint32_t> number;  ///< per vertex its number in the whole mesh
-  std::vector<std::uint32_t> face;    ///< per face its number in the file
+  std::vector<std::uint32_t> face;    ///< per face its number in MeshSpool::faces()
 };
 /// \param which charts, each once
-[[nodiscard]] ChartBatch load_charts(const ChartSpool& spool, std::span<const std::size_t> which,
-                                     const PointFile& points, const Lattice& lattice);
-[[nodiscard]] ChartBatch load_charts(const ChartSpool& spool, const ChartSpool::Batch& batch, const PointFile& points,
+[[nodiscard]] ChartBatch load_charts(const ChartSpool& spool, std::span<const std::size_t> which, const MeshSpool& of,
+                                     const Lattice& lattice);
+[[nodiscard]] ChartBatch load_charts(const ChartSpool& spool, const ChartSpool::Batch& batch, const MeshSpool& of,
                                      const Lattice& lattice);
 
 }  // namespace ramcdb::detail

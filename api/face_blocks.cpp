@@ -35,8 +35,9 @@ class BlockSorter {
     };
     sorter_.merge([&](const SortedFace& face) {
       const std::uint64_t held = blocks.faces.size() - begin;
-      // Equal keys stay together, so that blocks do not hang on how the file numbers faces.
-      if ((held >= block_faces && face.key != key) || held >= 2 * block_faces) end_block();
+      // Equal keys stay together, so that blocks do not hang on how the file numbers faces, and polygons are whole.
+      const bool may_split = face.key != key || (held >= 2 * block_faces && !mesh_.polygons);
+      if (held >= block_faces && may_split) end_block();
       key = face.key;
       blocks.faces.add(face);
       for (const std::uint32_t v : face.corners)
@@ -52,7 +53,7 @@ class BlockSorter {
  private:
   void report(double done) const { work_.report(kStage, done); }
   [[nodiscard]] double share(std::uint64_t faces) const {
-    return static_cast<double>(faces) / static_cast<double>(mesh_.faces.size() + 1);
+    return static_cast<double>(faces) / static_cast<double>(mesh_.faces().size() + 1);
   }
 
   [[nodiscard]] LatticePoint point(std::uint32_t vertex) const { return lattice_.snap(mesh_.points.at(vertex)); }
@@ -60,16 +61,40 @@ class BlockSorter {
   void add_faces() {
     constexpr std::size_t kSome = 1 << 12;
     std::vector<std::uint64_t> keys;
-    mesh_.faces.for_each_piece([&](std::span<const Triangle> piece, std::uint64_t first) {
+    std::vector<SortedFace> polygon;
+    mesh_.faces().for_each_piece([&](std::span<const Triangle> piece, std::uint64_t first) {
       keys.resize(piece.size());
       parallel_for((piece.size() + kSome - 1) / kSome, work_.threads, [&](std::size_t part) {
         for (std::size_t f = part * kSome; f < std::min(piece.size(), (part + 1) * kSome); ++f)
           keys[f] = curve_.key(point(piece[f][0]), point(piece[f][1]), point(piece[f][2]));
       });
-      for (std::size_t f = 0; f < piece.size(); ++f)
-        sorter_.add({keys[f], piece[f], static_cast<std::uint32_t>(first + f)});
+      for (std::size_t f = 0; f < piece.size(); ++f) {
+        const SortedFace face{keys[f], piece[f], static_cast<std::uint32_t>(first + f)};
+        if (mesh_.polygons)
+          add_to_polygon(face, polygon);
+        else
+          sorter_.add(face);
+      }
       report(0.5 * share(first));
     });
+    add_polygon(polygon);
+  }
+
+  void add_to_polygon(const SortedFace& face, std::vector<SortedFace>& polygon) {
+    if (!polygon.empty() && mesh_.source(polygon.front().face).face != mesh_.source(face.face).face)
+      add_polygon(polygon);
+    polygon.push_back(face);
+  }
+
+  /// Its triangles lie where the first of them does.
+  void add_polygon(std::vector<SortedFace>& polygon) {
+    std::uint64_t key = ~std::uint64_t{0};
+    for (const SortedFace& face : polygon) key = std::min(key, face.key);
+    for (SortedFace& face : polygon) {
+      face.key = key;
+      sorter_.add(face);
+    }
+    polygon.clear();
   }
 
   void add_isolated_vertices() {

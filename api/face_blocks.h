@@ -18,7 +18,7 @@ struct SortedFace {
 
   std::uint64_t key = 0;
   Triangle corners{};
-  std::uint32_t face = 0;  ///< in the file
+  std::uint32_t face = 0;  ///< its number in MeshSpool::faces()
 
   [[nodiscard]] bool is_isolated_vertex() const { return corners[1] == kNoVertex; }
   friend auto operator<=>(const SortedFace&, const SortedFace&) = default;

@@ -38,7 +38,7 @@ PositionSource positions_of(const MeshSpool& mesh, const LargeWork& work) {
   return source;
 }
 
-/// The record as far as it is known before charts are cut.
+/// The record as far as it is known before polygons and charts are cut.
 MeshRecord record_for(const MeshSpool& mesh, const ImportOptions& options, ImportReport& report,
                       const LargeWork& work) {
   const NumberType type = mesh.points.type();
@@ -52,7 +52,6 @@ MeshRecord record_for(const MeshSpool& mesh, const ImportOptions& options, Impor
   });
   report.measured_error = note_error(record, snapping.error(), type);
   record.vertices = mesh.vertices();
-  record.faces = mesh.faces.size();
   return record;
 }
 
@@ -64,11 +63,12 @@ ChartSpool cut_charts(const MeshSpool& mesh, const MeshRecord& record, const Imp
   chartify_options.threads = options.threads;
   // Half is left to what waits for a block.
   const FaceBlocks blocks = sort_into_blocks(mesh, record.lattice, record.range, sizes.most_faces / 2, work);
-  return cut_blocks(blocks, mesh.points, record.lattice, sizes, chartify_options, work);
+  return cut_blocks(blocks, mesh, record.lattice, sizes, chartify_options, work);
 }
 
 LayerTable layers_of(const MeshSpool& mesh, const ImportOptions& options) {
   LayerTable table;
+  if (mesh.polygons && mesh.polygons->count > 0) table.layers.push_back(polygon_layer(1));
   for (const SpooledAttribute& attribute : mesh.attributes)
     table.layers.push_back(layer_for(attribute.view(), static_cast<std::uint16_t>(table.layers.size() + 1),
                                      options.lossless || options.lossless_attributes));
@@ -82,19 +82,24 @@ ImportReport import_large(db::Store& store, const std::filesystem::path& file, c
                           const std::string& name, const LargeWork& work) {
   ImportReport report;
   sweep_scratch(work.folder);
-  const MeshSpool mesh = spool_mesh(file, options.weld, work);
+  MeshSpool mesh = spool_mesh(file, options.weld, work);
   report.vertices_welded = mesh.welded;
   for (const auto& left_out : mesh.dropped) report.dropped.push_back({left_out.what, left_out.count});
   MeshRecord record = record_for(mesh, options, report, work);
+  cut_polygons(mesh, record.lattice, work);
+  record.faces = mesh.faces().size();
+  if (mesh.polygons) {
+    record.polygons = report.polygons = mesh.polygons->count;
+    report.polygons_as_fans = mesh.polygons->fans;
+  }
   const PartSizes sizes = part_sizes(work, options.chart_faces);
   const ChartSpool spool = cut_charts(mesh, record, options, sizes, work);
   const std::vector<ChartSpool::Batch> batches = spool.batches(sizes.most_faces);
-  const ChartSeams seams = find_seams(spool, batches, sizes.at_a_time, mesh.points, record.lattice, work);
+  const ChartSeams seams = find_seams(spool, batches, sizes.at_a_time, mesh, record.lattice, work);
   note_topology(record, seams.topology);
 
   const LayerTable layers = layers_of(mesh, options);
-  BatchedCharts charts{spool, batches, sizes.at_a_time, seams, mesh.points, layers, {}};
-  for (const SpooledAttribute& attribute : mesh.attributes) charts.attributes.push_back(attribute.view());
+  const BatchedCharts charts{spool, batches, sizes.at_a_time, seams, mesh, layers};
   const codec::CoderTables tables = train_tables(charts, record);
   if (!(tables == codec::CoderTables{})) record.table = record.next_table;
   BlobSpool blobs(work.folder);

@@ -7,14 +7,7 @@ LayerSource::LayerSource(const mesh_file::MeshData& data, const mesh_file::Trian
                          bool lossless_attributes)
     : data_(data), cut_(cut), mesh_(mesh), encoder_(table_, record, data.attributes, exact) {
   std::uint16_t id = 0;
-  if (cut.polygons) {
-    Layer layer;
-    layer.id = ++id;
-    layer.coding = LayerCoding::polygons;
-    layer.info.name = "polygons";
-    layer.info.of = AttributeOf::face;
-    table_.layers.push_back(layer);
-  }
+  if (cut.polygons) table_.layers.push_back(polygon_layer(++id));
   for (const Attribute& attribute : data.attributes)
     table_.layers.push_back(layer_for(attribute, ++id, lossless_attributes));
   table_.references = data.references;

@@ -245,6 +245,13 @@ LayerTable decode_layer_table(Bytes blob, std::string_view where) {
   }
 }
 
+Layer polygon_layer(std::uint16_t id) {
+  Layer layer{id, {}, LayerCoding::polygons, 0};
+  layer.info.name = "polygons";
+  layer.info.of = AttributeOf::face;
+  return layer;
+}
+
 Layer layer_for(const mesh_file::AttributeView& attribute, std::uint16_t id, bool lossless) {
   Layer layer{id, attribute.info, LayerCoding::integer, 0};
   if (!is_float(attribute.info.type)) return layer;

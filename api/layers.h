@@ -51,6 +51,9 @@ struct LayerTable {
 /// Throws corrupt, naming `where`.
 [[nodiscard]] LayerTable decode_layer_table(Bytes blob, std::string_view where);
 
+/// The layer that says which triangles are one polygon.
+[[nodiscard]] Layer polygon_layer(std::uint16_t id);
+
 /// The layer that an attribute is stored as, unless `lossless` or it cannot hold the numbers: normals of length 1 as
 /// directions; other floats that programs compute with (colours, normals, texture coordinates) on a grid; all else
 /// without loss.

@@ -1,8 +1,11 @@
 #include "api/mesh_spool.h"
 
 #include <compare>
+#include <numeric>
 
 #include "api/external_sort.h"
+#include "api/mesh_file/triangulate.h"
+#include "api/vertex_ranks.h"
 
 namespace ramcdb::detail {
 namespace {
@@ -11,28 +14,32 @@ constexpr int kSome = 1 << 16;  ///< records between reports
 
 class PieceSpooler : public mesh_file::MeshSink {
  public:
-  PieceSpooler(MeshSpool& to, std::string file) : to_(to), file_(std::move(file)) {}
+  explicit PieceSpooler(MeshSpool& to) : to_(to) {}
 
   void take(mesh_file::MeshData& piece) override {
-    if (!piece.face_sizes.empty()) throw mesh_file::NotInPieces("a mesh with polygons", file_);
     take_values(piece.attributes);
     to_.points.add(piece.positions);
+    if (!to_.polygons && !piece.face_sizes.empty()) begin_polygons();
+    if (to_.polygons) return to_.polygons->add(piece.corners, piece.face_sizes);
     for (std::size_t c = 0; c < piece.corners.size(); c += 3)
-      to_.faces.add({piece.corners[c], piece.corners[c + 1], piece.corners[c + 2]});
+      to_.triangles.add({piece.corners[c], piece.corners[c + 1], piece.corners[c + 2]});
   }
 
  private:
+  void begin_polygons() {
+    to_.triangles.flush();
+    to_.polygons.emplace(to_.folder);
+    to_.polygons->add_triangles(to_.triangles);
+  }
+
   void take_values(const std::vector<Attribute>& attributes) {
     for (std::size_t a = 0; a < attributes.size(); ++a) {
-      if (attributes[a].info.of != AttributeOf::vertex)
-        throw mesh_file::NotInPieces("a mesh with attributes of faces or corners", file_);
       if (a == to_.attributes.size()) to_.attributes.emplace_back(attributes[a].info, to_.folder);
       to_.attributes[a].add(attributes[a].values);
     }
   }
 
   MeshSpool& to_;
-  std::string file_;
 };
 
 struct VertexAtPoint {
@@ -87,12 +94,21 @@ void weld(MeshSpool& mesh, const LargeWork& work) {
   const auto first = view.as<std::uint32_t>();
   for (SpooledAttribute& attribute : mesh.attributes) {
     work.report("weld", 0.6);
-    attribute.join(first);
+    if (attribute.info().of == AttributeOf::vertex) attribute.join(first);
   }
-  mesh.faces.replace([&, seen = 0](Triangle& t) mutable {
+  auto report = [&, seen = 0]() mutable {
     if (++seen % kSome == 0) work.report("weld", 0.7);
-    t = {first[t[0]], first[t[1]], first[t[2]]};
-  });
+  };
+  if (mesh.polygons)
+    mesh.polygons->corners.replace([&](std::uint32_t& v) {
+      report();
+      v = first[v];
+    });
+  else
+    mesh.triangles.replace([&](Triangle& t) {
+      report();
+      t = {first[t[0]], first[t[1]], first[t[2]]};
+    });
 }
 
 }  // namespace
@@ -111,22 +127,89 @@ void SpooledAttribute::join(std::span<const std::uint32_t> first_of_vertex) {
   });
 }
 
+void SpooledPolygons::add(std::span<const std::uint32_t> face_corners, std::span<const std::uint32_t> face_sizes) {
+  corners.add(face_corners);
+  if (!face_sizes.empty()) return sizes_.add(face_sizes);
+  for (std::size_t c = 0; c < face_corners.size(); c += 3) sizes_.add(3);
+}
+
+void SpooledPolygons::add_triangles(const ScratchRecords<Triangle>& before) {
+  before.for_each_piece([&](std::span<const Triangle> piece, std::uint64_t) {
+    for (const Triangle& t : piece) add(t, {});
+  });
+}
+
+void SpooledPolygons::finish() {
+  corners.flush();
+  sizes_.flush();
+}
+
+void SpooledPolygons::cut(const PointFile& points, const Lattice& lattice, const LargeWork& work) {
+  if (corners.size() > 0xffffffffU)
+    throw Error(Errc::limit_exceeded, "the mesh has more than 2^32 - 1 corners of faces", "", "split it");
+  mesh_file::CutSteps steps;
+  std::uint32_t first_corner = 0;
+  sizes_.for_each_piece([&](std::span<const std::uint32_t> sizes, std::uint64_t first_face) {
+    work.report("sort", 0);
+    const std::uint64_t count_here = std::accumulate(sizes.begin(), sizes.end(), std::uint64_t{0});
+    const auto named = corners.read(first_corner, static_cast<std::size_t>(count_here));
+    const VertexRanks ranks(named);
+    std::vector<Point> positions;
+    for (const std::uint32_t v : ranks.vertices) {
+      const LatticePoint p = lattice.snap(points.at(v));
+      positions.push_back({static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
+    }
+    const mesh_file::Triangulation pieces = mesh_file::triangulate(positions, ranks.rank, sizes, steps);
+    for (std::size_t t = 0; t < pieces.corners.size(); ++t) {
+      const auto [a, b, c] = pieces.corners[t];
+      triangles.add({named[a], named[b], named[c]});
+      sources_.add({static_cast<std::uint32_t>(first_face) + pieces.face[t],
+                    {first_corner + a, first_corner + b, first_corner + c}});
+    }
+    count += pieces.polygons;
+    fans += pieces.fans;
+    first_corner += static_cast<std::uint32_t>(count_here);
+  });
+  triangles.flush();
+  sources_.flush();
+  view_.emplace(sources_.view());
+}
+
+std::vector<std::uint32_t> MeshSpool::polygons_of(std::span<const std::uint32_t> of_triangles) const {
+  if (!polygons) return {};
+  std::vector<std::uint32_t> faces;
+  for (const std::uint32_t t : of_triangles) faces.push_back(source(t).face);
+  return VertexRanks(faces).rank;
+}
+
+void cut_polygons(MeshSpool& mesh, const Lattice& lattice, const LargeWork& work) {
+  if (!mesh.polygons) return;
+  mesh.polygons->cut(mesh.points, lattice, work);
+}
+
 MeshSpool spool_mesh(const std::filesystem::path& file, std::optional<bool> weld_points, const LargeWork& work) {
   MeshSpool mesh(work.folder);
-  PieceSpooler spooler(mesh, file.string());
+  PieceSpooler spooler(mesh);
   mesh_file::MeshData rest = mesh_file::read_in_pieces(file, spooler, [&](double done) { work.report("read", done); });
   mesh.points.finish();
   for (SpooledAttribute& attribute : mesh.attributes) attribute.finish();
-  mesh.faces.flush();
+  mesh.triangles.flush();
+  if (mesh.polygons) mesh.polygons->finish();
   mesh.references = std::move(rest.references);
   mesh.dropped = std::move(rest.dropped);
   mesh.in_a_face.resize(static_cast<std::size_t>(mesh.points.size()));
   if (weld_points.value_or(rest.soup)) weld(mesh, work);
-  mesh.faces.for_each_piece([&](std::span<const Triangle> piece, std::uint64_t) {
-    work.report("read", 1);
-    for (const Triangle& t : piece)
-      for (const std::uint32_t v : t) mesh.in_a_face[v] = true;
-  });
+  if (mesh.polygons)
+    mesh.polygons->corners.for_each_piece([&](std::span<const std::uint32_t> piece, std::uint64_t) {
+      work.report("read", 1);
+      for (const std::uint32_t v : piece) mesh.in_a_face[v] = true;
+    });
+  else
+    mesh.triangles.for_each_piece([&](std::span<const Triangle> piece, std::uint64_t) {
+      work.report("read", 1);
+      for (const Triangle& t : piece)
+        for (const std::uint32_t v : t) mesh.in_a_face[v] = true;
+    });
   return mesh;
 }
 

@@ -225,13 +225,9 @@ class RecutEncoder {
 
   /// A mesh of triangles gets its first polygons.
   void add_polygon_layer() {
-    Layer layer;
-    layer.id = static_cast<std::uint16_t>(table_.layers.empty() ? 1 : table_.layers.back().id + 1);
-    layer.coding = LayerCoding::polygons;
-    layer.info.name = "polygons";
-    layer.info.of = AttributeOf::face;
+    const int id = table_.layers.empty() ? 1 : table_.layers.back().id + 1;
     if (at_.record().layers) record().table_bytes -= encode_layer_table(table_).size() + kBlobOverhead;
-    table_.layers.push_back(layer);
+    table_.layers.push_back(polygon_layer(static_cast<std::uint16_t>(id)));
     Buffer blob = encode_layer_table(table_);
     record().table_bytes += blob.size() + kBlobOverhead;
     builder_.add_blob(db::Kind::attribute, 0, std::move(blob));

@@ -181,7 +181,7 @@ std::uint64_t count_duplicates(const Surface& surface, const Scope& scope) {
   for (auto& [polygon, vertices] : vertices_of) {
     std::sort(vertices.begin(), vertices.end());
     if (vertices.size() > 3) vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    sorted.push_back(std::move(vertices));
+    if (scope.has(vertices)) sorted.push_back(std::move(vertices));
   }
   return count_equal(sorted);
 }

@@ -15,10 +15,6 @@ Point cross(const Point& a, const Point& b) {
 }
 double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// Looking for ears takes quadratic time, in polygons without ears cubic. So many comparisons are for all polygons of a
-/// mesh together (and kStepsPerCorner more each); hostile ones beyond become fans.
-constexpr std::uint64_t kMostSteps = std::uint64_t{1} << 32, kStepsPerCorner = 64;
-
 /// Cuts one polygon into triangles: repeatedly the first corner that turns left and has no other corner inside its
 /// ear. Where no ear is left (a polygon that crosses itself, touches itself, or is without area) a corner goes that
 /// turns neither way, and where there is none of these either, the first.
@@ -121,14 +117,14 @@ class EarClipper {
 }  // namespace
 
 Triangulation triangulate(std::span<const Point> positions, std::span<const std::uint32_t> corners,
-                          std::span<const std::uint32_t> face_sizes) {
+                          std::span<const std::uint32_t> face_sizes, CutSteps& steps) {
   if (corners.size() > 0xffffffffU)
     throw Error(Errc::limit_exceeded, "the mesh has more than 2^32 - 1 corners of faces", "", "split it");
   Triangulation cut;
   const std::size_t faces = face_sizes.empty() ? corners.size() / 3 : face_sizes.size();
   cut.corners.reserve(corners.size() - 2 * faces);
   cut.face.reserve(corners.size() - 2 * faces);
-  std::uint64_t steps = kMostSteps + kStepsPerCorner * corners.size();
+  steps.add(corners.size());
   std::size_t begin = 0;
   for (std::size_t f = 0; f < faces; ++f) {
     const std::uint32_t size = face_sizes.empty() ? 3 : face_sizes[f];
@@ -136,7 +132,7 @@ Triangulation triangulate(std::span<const Point> positions, std::span<const std:
       const auto c = static_cast<std::uint32_t>(begin);
       cut.corners.push_back({c, c + 1, c + 2});
     } else {
-      cut.fans += !EarClipper(positions, corners, begin, size, steps).clip(cut.corners);
+      cut.fans += !EarClipper(positions, corners, begin, size, steps.left).clip(cut.corners);
       ++cut.polygons;
     }
     cut.face.resize(cut.corners.size(), static_cast<std::uint32_t>(f));

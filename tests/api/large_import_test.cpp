@@ -1,11 +1,13 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <functional>
 #include <string>
 
 #include "tests/api/blobs_of.h"
+#include "tests/api/painted_grid.h"
 #include "tests/api/temp_repository.h"
 #include "tests/db/child_process.h"
 
@@ -281,6 +283,74 @@ TEST(LargeImport, KeepsAttributesOfVertices) {
   }
 }
 
+/// A grid of polygons with attributes of every kind, and places that are not manifold: a quad twice, a quad that stands
+/// on an edge, and a triangle on the diagonal of another.
+mesh_file::MeshData ugly_polygons() {
+  mesh_file::MeshData mesh = painted_grid(40);
+  const auto add = [&](std::initializer_list<std::uint32_t> face) {
+    mesh.face_sizes.push_back(static_cast<std::uint32_t>(face.size()));
+    mesh.corners.insert(mesh.corners.end(), face.begin(), face.end());
+    for (Attribute& attribute : mesh.attributes)
+      for (std::size_t k = 0; k < attribute.info.components; ++k) {
+        if (attribute.info.of == AttributeOf::face) attribute.values.push_back(3);
+        for (std::size_t c = 0; attribute.info.of == AttributeOf::corner && c < face.size(); ++c)
+          attribute.values.push_back(0.5);
+      }
+  };
+  const auto vertex = [&](double x, double y, double z) {
+    mesh.positions.push_back({x, y, z});
+    for (Attribute& attribute : mesh.attributes)
+      for (std::size_t k = 0; attribute.info.of == AttributeOf::vertex && k < attribute.info.components; ++k)
+        attribute.values.push_back(k == 2 ? 1 : 0);
+    return static_cast<std::uint32_t>(mesh.positions.size() - 1);
+  };
+  std::size_t first = 0;
+  for (std::size_t f = 0; f < 900; first += mesh.face_sizes[f++]) {
+    if (mesh.face_sizes[f] != 4 || f % 40 != 7) continue;
+    const std::array<std::uint32_t, 4> quad{mesh.corners[first], mesh.corners[first + 1], mesh.corners[first + 2],
+                                            mesh.corners[first + 3]};
+    const Point p = mesh.positions[quad[0]], q = mesh.positions[quad[2]];
+    if (f % 80 == 7) add({quad[1], quad[2], quad[3], quad[0]});
+    add({quad[0], quad[1], vertex(q.x, p.y, 5), vertex(p.x, p.y, 5)});
+    add({quad[0], quad[2], vertex(p.x, q.y, 4)});
+  }
+  (void)vertex(3, 3, 9);
+  return mesh;
+}
+
+void expect_same_counts(const MeshInfo& a, const MeshInfo& b) {
+  EXPECT_EQ(a.vertices, b.vertices);
+  EXPECT_EQ(a.faces, b.faces);
+  EXPECT_EQ(a.polygons, b.polygons);
+  EXPECT_EQ(a.isolated_vertices, b.isolated_vertices);
+  EXPECT_EQ(a.degenerate_faces, b.degenerate_faces);
+  EXPECT_EQ(a.duplicate_faces, b.duplicate_faces);
+  EXPECT_EQ(a.nonmanifold_edges, b.nonmanifold_edges);
+  EXPECT_EQ(a.nonmanifold_vertices, b.nonmanifold_vertices);
+  EXPECT_EQ(a.inconsistent_edges, b.inconsistent_edges);
+}
+
+TEST(LargeImport, KeepsPolygonsAndAttributesOfAllKinds) {
+  const mesh_file::MeshData mesh = ugly_polygons();
+  for (const std::uint64_t memory : {kLittle, kSeveral}) {
+    const Imports imports;
+    write_data(mesh, imports / "in.ply");
+    std::vector<MeshInfo> infos;
+    for (const auto& [name, bytes] : {std::pair("large", std::optional(memory)), {"core", std::nullopt}}) {
+      infos.push_back(imports.import("in.ply", name, bytes).info);
+      const Snapshot snapshot = imports.repository().snapshot(name);
+      (void)imports.repository().export_mesh(snapshot, imports / "out.ply", {});
+      const mesh_file::MeshData out = mesh_file::read_mesh(imports / "out.ply");
+      EXPECT_EQ(out.positions.size(), mesh.positions.size());
+      EXPECT_TRUE(records(snapshot, out) == records(snapshot, mesh)) << name;
+    }
+    expect_same_counts(infos[0], infos[1]);
+    EXPECT_GT(infos[0].nonmanifold_edges, 20U);
+    EXPECT_GT(infos[0].duplicate_faces, 5U);
+    EXPECT_THAT(imports.problems(), testing::IsEmpty());
+  }
+}
+
 TEST(LargeImport, KeepsPositionsToTheLastBit) {
   for (const bool wide : {false, true}) {
     const Imports imports;
@@ -310,14 +380,9 @@ std::string text_of_error(const std::function<void()>& work) {
 
 TEST(LargeImport, RefusesWhatItCannotTakeUnlessMemoryIsLeftOpen) {
   const Imports imports;
-  std::ofstream(imports / "quad.obj") << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
   std::ofstream(imports / "group.obj") << "v 0 0 0\nv 1 0 0\nv 1 1 0\ng left\nf 1 2 3\n";
-  std::ofstream(imports / "color.ply")
-      << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-         "property float z\nelement face 1\n"
-         "property list uchar int vertex_indices\nproperty uchar red\nend_header\n"
-         "0 0 0\n1 0 0\n1 1 0\n3 0 1 2 9\n";
-  for (const char* file : {"quad.obj", "group.obj", "color.ply"}) {
+  std::ofstream(imports / "color.obj") << "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 1 1 0 1 0 0\nf 1 2 3\n";
+  for (const char* file : {"group.obj", "color.obj"}) {
     EXPECT_THAT(text_of_error([&] { (void)imports.import(file, file, 1); }), testing::HasSubstr("--memory")) << file;
     EXPECT_EQ(text_of_error([&] { (void)imports.import(file, file, {}); }), "") << file;
   }
