@@ -14,7 +14,8 @@ namespace {
 
 constexpr int kRounds = 8;  // a part may come out too small or too large again
 
-/// Joins small charts with their neighbours, the smallest first.
+/// Joins small charts with their neighbours, the smallest first, and slight ones with those that they make one chart
+/// with of up to the target.
 class SmallCharts {
  public:
   SmallCharts(Recut& cut, std::vector<SmallComponent>& small) : cut_(cut), small_(small) {}
@@ -30,17 +31,17 @@ class SmallCharts {
       const std::uint32_t c = queue_.begin()->second;
       queue_.erase(queue_.begin());
       const std::uint32_t to = closest(c);
-      if (to == kNone)
-        lone_[c] = 1;
-      else
+      if (to != kNone)
         join(c, to);
+      else if (cut_.is_small(sizes[c]))
+        lone_[c] = 1;
     }
     relabel();
   }
 
  private:
   [[nodiscard]] bool waits(std::uint32_t c) const {
-    return cut_.partition.sizes[c] > 0 && cut_.is_small(cut_.partition.sizes[c]);
+    return cut_.partition.sizes[c] > 0 && cut_.is_slight(cut_.partition.sizes[c]);
   }
 
   void count_borders() {
@@ -53,15 +54,19 @@ class SmallCharts {
     }
   }
 
+  /// The neighbour to join; kNone where there is none, or none that a chart which need not join fits.
   [[nodiscard]] std::uint32_t closest(std::uint32_t c) const {
     const std::vector<std::uint32_t>& sizes = cut_.partition.sizes;
+    const bool must_join = cut_.is_small(sizes[c]);
     const auto rank = [&](std::uint32_t other, std::uint32_t edges) {
       const bool fits = !cut_.is_large(std::uint64_t{sizes[c]} + sizes[other]);
       return std::tuple(!fits, ~edges, sizes[other], other);
     };
     std::uint32_t best = kNone, most = 0;
     for (const auto& [other, edges] : borders_[c])
-      if (best == kNone || rank(other, edges) < rank(best, most)) best = other, most = edges;
+      if ((must_join || sizes[c] + sizes[other] <= cut_.target) &&
+          (best == kNone || rank(other, edges) < rank(best, most)))
+        best = other, most = edges;
     return best;
   }
 

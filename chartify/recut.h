@@ -29,8 +29,9 @@ struct Recut {
     while (into[chart] != chart) chart = into[chart];
     return chart;
   }
-  /// Smaller charts join others, larger ones are split.
+  /// Smaller charts join others, larger ones are split; slight ones join where that makes a good chart.
   [[nodiscard]] bool is_small(std::uint64_t faces) const { return 4 * faces < target; }
+  [[nodiscard]] bool is_slight(std::uint64_t faces) const { return 2 * faces <= target; }
   [[nodiscard]] bool is_large(std::uint64_t faces) const { return faces > 2ULL * target; }
 };
 
