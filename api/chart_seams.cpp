@@ -167,7 +167,9 @@ class SeamFinder {
           ends.corners.insert(ends.corners.end(), found.ends.corners.begin(), found.ends.corners.end());
         });
     if (batches_.size() == 1) return;
+    work_.report(kStage, 1);
     out_.topology += surroundings.analyze(out_.shared, mesh_);
+    work_.report(kStage, 1);
     out_.net = chartify::join_seams(seams_, std::move(ends),
                                     [&](std::uint32_t v) { return lattice_.snap(mesh_.points.at(v)); });
     for (std::uint32_t w = 0; w < out_.net.wires.size(); ++w)

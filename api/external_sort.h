@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "api/scratch_records.h"
@@ -41,10 +42,13 @@ void merge_runs(std::vector<RecordCursor<Record>>& runs, Take&& take) {
 template <class Record>
 class ExternalSorter {
  public:
-  ExternalSorter(const std::filesystem::path& folder, std::uint64_t memory, unsigned threads)
+  /// \param report is called again and again while runs are sorted; may throw to cancel
+  ExternalSorter(const std::filesystem::path& folder, std::uint64_t memory, unsigned threads,
+                 std::function<void()> report)
       : records_(folder),
         memory_(memory),
-        threads_(std::max(threads, 1U)),
+        threads_(threads),
+        report_(std::move(report)),
         most_(std::max<std::size_t>(static_cast<std::size_t>(memory) / sizeof(Record), 16)) {}
 
   void add(const Record& record) {
@@ -68,15 +72,17 @@ class ExternalSorter {
 
  private:
   static constexpr std::size_t kMostHeld = (std::size_t{1} << 20) / sizeof(Record);
+  static constexpr std::size_t kMostOfRun = std::size_t{1} << 19;  // a tenth of a second
 
-  /// A run for each thread.
   void end_runs() {
-    const std::size_t each = held_.size() / threads_ + 1, count = (held_.size() + each - 1) / each;
+    const std::size_t count = (held_.size() + kMostOfRun - 1) / kMostOfRun;
     const auto run = [&](std::size_t r) {
-      return std::span(held_).subspan(r * each, std::min(each, held_.size() - r * each));
+      return std::span(held_).subspan(r * kMostOfRun, std::min(kMostOfRun, held_.size() - r * kMostOfRun));
     };
-    parallel_for(count, threads_, [&](std::size_t r) { std::sort(run(r).begin(), run(r).end()); });
+    parallel_for(
+        count, threads_, [&](std::size_t r) { std::sort(run(r).begin(), run(r).end()); }, [&](double) { report_(); });
     for (std::size_t r = 0; r < count; ++r) {
+      report_();
       records_.add(std::span<const Record>(run(r)));
       runs_.push_back(records_.size());
     }
@@ -86,6 +92,7 @@ class ExternalSorter {
   ScratchRecords<Record> records_;
   std::uint64_t memory_;
   unsigned threads_;
+  std::function<void()> report_;
   std::size_t most_;
   std::vector<Record> held_;
   std::vector<std::uint64_t> runs_;  ///< where each ends

@@ -18,7 +18,7 @@ class BlockSorter {
         lattice_(lattice),
         curve_(range),
         work_(work),
-        sorter_(work.folder, work.memory / 4, work.threads) {}
+        sorter_(work.folder, work.memory / 4, work.threads, [this] { report(done_); }) {}
 
   FaceBlocks run(std::uint64_t block_faces) {
     add_faces();
@@ -51,7 +51,7 @@ class BlockSorter {
   }
 
  private:
-  void report(double done) const { work_.report(kStage, done); }
+  void report(double done) { work_.report(kStage, done_ = done); }
   [[nodiscard]] double share(std::uint64_t faces) const {
     return static_cast<double>(faces) / static_cast<double>(mesh_.faces().size() + 1);
   }
@@ -110,6 +110,7 @@ class BlockSorter {
   const Lattice& lattice_;
   chartify::HilbertCurve curve_;
   const LargeWork& work_;
+  double done_ = 0;
   ExternalSorter<SortedFace> sorter_;
 };
 

@@ -100,6 +100,7 @@ ImportReport import_large(db::Store& store, const std::filesystem::path& file, c
 
   const LayerTable layers = layers_of(mesh, options);
   const BatchedCharts charts{spool, batches, sizes.at_a_time, seams, mesh, layers};
+  work.report("encode", 0);
   const codec::CoderTables tables = train_tables(charts, record);
   if (!(tables == codec::CoderTables{})) record.table = record.next_table;
   BlobSpool blobs(work.folder);

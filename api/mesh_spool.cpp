@@ -60,17 +60,18 @@ struct Standing {
 
 /// Per vertex the one that stands for it.
 ScratchRecords<std::uint32_t> find_firsts(const PointFile& points, const LargeWork& work) {
-  ExternalSorter<Standing> by_vertex(work.folder, work.memory / 4, work.threads);
+  const auto report = [&] { work.report("weld", 0.3); };
+  ExternalSorter<Standing> by_vertex(work.folder, work.memory / 4, work.threads, report);
   {
-    ExternalSorter<VertexAtPoint> by_point(work.folder, work.memory / 4, work.threads);
+    ExternalSorter<VertexAtPoint> by_point(work.folder, work.memory / 4, work.threads, report);
     for (std::uint32_t v = 0; v < points.size(); ++v) {
-      if (v % kSome == 0) work.report("weld", 0);
+      if (v % kSome == 0) report();
       const Point p = points.at(v);
       by_point.add({{p.x + 0.0, p.y + 0.0, p.z + 0.0}, v});  // -0 + 0 is 0
     }
     std::optional<VertexAtPoint> first;
     by_point.merge([&](const VertexAtPoint& here) {
-      if (here.vertex % kSome == 0) work.report("weld", 0.3);
+      if (here.vertex % kSome == 0) report();
       if (!first || first->point != here.point) first = here;
       by_vertex.add({here.vertex, first->vertex});
     });
