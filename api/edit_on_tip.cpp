@@ -1,6 +1,7 @@
 #include "api/edit_on_tip.h"
 
 #include <algorithm>
+#include <bit>
 #include <functional>
 
 #include "api/chart_difference.h"
@@ -29,6 +30,8 @@ ChartId home_in(const PendingEdit& edit, const std::vector<ChartId>& charts) {
   return first == edit.region.charts.end() ? ChartId() : *first;
 }
 
+bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+
 /// Whether an edit left a vertex of its region where it was, with the values that it had.
 bool is_as_before(const EditedRegion& edited, const RegionMesh& region, std::uint32_t v) {
   const std::uint32_t source = edited.vertex_source[v];
@@ -40,7 +43,7 @@ bool is_as_before(const EditedRegion& edited, const RegionMesh& region, std::uin
     if (region.attributes[a].info.of == AttributeOf::vertex &&
         !std::equal(mesh.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(v * n),
                     mesh.attributes[a].values.begin() + static_cast<std::ptrdiff_t>((v + 1) * n),
-                    region.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(source * n)))
+                    region.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(source * n), same_bits))
       return false;
   }
   return true;

@@ -62,7 +62,7 @@ class ExternalSorter {
   template <class Take>
   void merge(Take&& take) {
     end_runs();
-    held_ = {};
+    std::vector<Record>().swap(held_);
     const std::size_t each = static_cast<std::size_t>(memory_) / (sizeof(Record) * (runs_.size() + 1));
     std::vector<RecordCursor<Record>> cursors;
     for (std::size_t r = 0; r < runs_.size(); ++r)

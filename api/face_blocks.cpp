@@ -26,7 +26,8 @@ class BlockSorter {
     FaceBlocks blocks(work_.folder);
     SharedVertexFinder finder(work_, kStage);
     std::vector<std::uint32_t> vertices;
-    std::uint64_t begin = 0, key = 0;
+    std::uint64_t begin = 0;
+    SortedFace before;
     const auto end_block = [&] {
       blocks.ends.push_back(begin = blocks.faces.size());
       finder.add_group(std::move(vertices));
@@ -35,10 +36,10 @@ class BlockSorter {
     };
     sorter_.merge([&](const SortedFace& face) {
       const std::uint64_t held = blocks.faces.size() - begin;
-      // Equal keys stay together, so that blocks do not hang on how the file numbers faces, and polygons are whole.
-      const bool may_split = face.key != key || (held >= 2 * block_faces && !mesh_.polygons);
+      // Equal keys stay together, so that blocks do not hang on how the file numbers faces, unless these are too many.
+      const bool may_split = face.key != before.key || (held >= 2 * block_faces && !is_of_polygon(face, before));
       if (held >= block_faces && may_split) end_block();
-      key = face.key;
+      before = face;
       blocks.faces.add(face);
       for (const std::uint32_t v : face.corners)
         if (v != SortedFace::kNoVertex) vertices.push_back(v);
@@ -69,7 +70,7 @@ class BlockSorter {
           keys[f] = curve_.key(point(piece[f][0]), point(piece[f][1]), point(piece[f][2]));
       });
       for (std::size_t f = 0; f < piece.size(); ++f) {
-        const SortedFace face{keys[f], piece[f], static_cast<std::uint32_t>(first + f)};
+        const SortedFace face{keys[f], static_cast<std::uint32_t>(first + f), piece[f]};
         if (mesh_.polygons)
           add_to_polygon(face, polygon);
         else
@@ -78,6 +79,11 @@ class BlockSorter {
       report(0.5 * share(first));
     });
     add_polygon(polygon);
+  }
+
+  [[nodiscard]] bool is_of_polygon(const SortedFace& face, const SortedFace& before) const {
+    return mesh_.polygons && !face.is_isolated_vertex() && !before.is_isolated_vertex() &&
+           mesh_.source(face.face).face == mesh_.source(before.face).face;
   }
 
   void add_to_polygon(const SortedFace& face, std::vector<SortedFace>& polygon) {
@@ -102,7 +108,7 @@ class BlockSorter {
       if (v % (1U << 20) == 0) report(0.5);
       if (mesh_.in_a_face[v]) continue;
       const LatticePoint p = point(v);
-      sorter_.add({curve_.key(p, p, p), {v, SortedFace::kNoVertex, SortedFace::kNoVertex}, SortedFace::kNoVertex});
+      sorter_.add({curve_.key(p, p, p), SortedFace::kNoVertex, {v, SortedFace::kNoVertex, SortedFace::kNoVertex}});
     }
   }
 

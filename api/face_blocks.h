@@ -17,8 +17,8 @@ struct SortedFace {
   static constexpr std::uint32_t kNoVertex = ~std::uint32_t{0};
 
   std::uint64_t key = 0;
-  Triangle corners{};
   std::uint32_t face = 0;  ///< its number in MeshSpool::faces()
+  Triangle corners{};
 
   [[nodiscard]] bool is_isolated_vertex() const { return corners[1] == kNoVertex; }
   friend auto operator<=>(const SortedFace&, const SortedFace&) = default;

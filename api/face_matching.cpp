@@ -17,7 +17,7 @@ void pair_by_claims(MatchState& state, std::vector<std::uint32_t> ids) {
     const VertexClaims by_id(state, std::move(ids));
     const std::uint64_t most = std::min(state.from.face_count(), state.to.face_count());
     if (by_id.faces() * 2 >= most || by_id.faces() >= VertexClaims(state, claims_by_place(state)).faces()) {
-      state.without_id = std::move(without_id);
+      if (by_id.faces() > 0 && by_id.faces() * 2 >= most) state.without_id = std::move(without_id);
       by_id.settle_by_faces(state, true);
     }
   }

@@ -74,6 +74,7 @@ bool MatchWalk::pair_faces(std::uint32_t face, FaceMatch match) {
 }
 
 std::size_t keep_what_fits(MatchState& state, const std::vector<std::uint32_t>& paired) {
+  constexpr std::uint64_t kFewFaces = 2;  // do not tell alone who a vertex is
   const auto is_whole = [&](std::uint32_t w) {
     const std::uint32_t v = state.pairs.from(w);
     return v != kNowhere && state.from_rings.degree(v) == state.to_rings.degree(w);
@@ -104,7 +105,8 @@ std::size_t keep_what_fits(MatchState& state, const std::vector<std::uint32_t>& 
   }
   std::size_t kept = 0;
   for (std::uint32_t i = 0; i < paired.size(); ++i)
-    if (of_group[groups.root(i)].at_least(3, 4) && shares[i].at_least(1, 2) && around[i].at_least(1, 2))
+    if (of_group[groups.root(i)].at_least(3, 4) && shares[i].at_least(1, 2) &&
+        (shares[i].all > kFewFaces || around[i].at_least(1, 2)))
       ++kept;
     else
       state.pairs.unset(paired[i]);

@@ -36,8 +36,8 @@ class MatchWalk {
 };
 
 /// Takes back what a walk over moved vertices found where it came upon another connectivity: there equal numbers of
-/// faces were a coincidence. So they may be where most of the vertices beside one have lost or got faces. Returns how
-/// many pairs stay.
+/// faces were a coincidence. So they may be at a vertex of one or two faces, where most of the vertices beside it have
+/// lost or got some. Returns how many pairs stay.
 std::size_t keep_what_fits(MatchState& state, const std::vector<std::uint32_t>& paired);
 
 /// Pairs faces whose vertices all lie in the same places, in order, where places do not tell vertices apart.

@@ -2,9 +2,9 @@
 
 #include <compare>
 #include <numeric>
+#include <utility>
 
 #include "api/external_sort.h"
-#include "api/mesh_file/triangulate.h"
 #include "api/vertex_ranks.h"
 
 namespace ramcdb::detail {
@@ -77,7 +77,10 @@ ScratchRecords<std::uint32_t> find_firsts(const PointFile& points, const LargeWo
     });
   }
   ScratchRecords<std::uint32_t> firsts(work.folder);
-  by_vertex.merge([&](const Standing& standing) { firsts.add(standing.first); });
+  by_vertex.merge([&](const Standing& standing) {
+    if (standing.vertex % kSome == 0) work.report("weld", 0.5);
+    firsts.add(standing.first);
+  });
   firsts.flush();
   return firsts;
 }
@@ -93,11 +96,9 @@ void weld(MeshSpool& mesh, const LargeWork& work) {
   });
   const ScratchView view = firsts.view();
   const auto first = view.as<std::uint32_t>();
-  for (SpooledAttribute& attribute : mesh.attributes) {
-    work.report("weld", 0.6);
-    if (attribute.info().of == AttributeOf::vertex) attribute.join(first);
-  }
-  auto report = [&, seen = 0]() mutable {
+  for (SpooledAttribute& attribute : mesh.attributes)
+    if (attribute.info().of == AttributeOf::vertex) attribute.join(first, [&] { work.report("weld", 0.6); });
+  const std::function<void()> report = [&, seen = std::uint64_t{0}]() mutable {
     if (++seen % kSome == 0) work.report("weld", 0.7);
   };
   if (mesh.polygons)
@@ -119,10 +120,11 @@ void SpooledAttribute::finish() {
   view_.emplace(values_.view());
 }
 
-void SpooledAttribute::join(std::span<const std::uint32_t> first_of_vertex) {
+void SpooledAttribute::join(std::span<const std::uint32_t> first_of_vertex, const std::function<void()>& report) {
   const std::size_t components = info_.components;
   const auto before = view_->as<double>();
   values_.replace([&, i = std::size_t{0}](double& value) mutable {
+    if (i % kSome == 0) report();
     value = before[first_of_vertex[i / components] * components + i % components];
     ++i;
   });
@@ -131,12 +133,14 @@ void SpooledAttribute::join(std::span<const std::uint32_t> first_of_vertex) {
 void SpooledPolygons::add(std::span<const std::uint32_t> face_corners, std::span<const std::uint32_t> face_sizes) {
   corners.add(face_corners);
   if (!face_sizes.empty()) return sizes_.add(face_sizes);
-  for (std::size_t c = 0; c < face_corners.size(); c += 3) sizes_.add(3);
+  for (std::size_t c = 0; c < face_corners.size(); c += 3) sizes_.add(std::uint32_t{3});
 }
 
 void SpooledPolygons::add_triangles(const ScratchRecords<Triangle>& before) {
   before.for_each_piece([&](std::span<const Triangle> piece, std::uint64_t) {
-    for (const Triangle& t : piece) add(t, {});
+    std::vector<std::uint32_t> vertices;
+    for (const Triangle& t : piece) vertices.insert(vertices.end(), t.begin(), t.end());
+    add(vertices, {});
   });
 }
 
@@ -148,32 +152,39 @@ void SpooledPolygons::finish() {
 void SpooledPolygons::cut(const PointFile& points, const Lattice& lattice, const LargeWork& work) {
   if (corners.size() > 0xffffffffU)
     throw Error(Errc::limit_exceeded, "the mesh has more than 2^32 - 1 corners of faces", "", "split it");
-  mesh_file::CutSteps steps;
-  std::uint32_t first_corner = 0;
-  sizes_.for_each_piece([&](std::span<const std::uint32_t> sizes, std::uint64_t first_face) {
-    work.report("sort", 0);
-    const std::uint64_t count_here = std::accumulate(sizes.begin(), sizes.end(), std::uint64_t{0});
-    const auto named = corners.read(first_corner, static_cast<std::size_t>(count_here));
-    const VertexRanks ranks(named);
-    std::vector<Point> positions;
-    for (const std::uint32_t v : ranks.vertices) {
-      const LatticePoint p = lattice.snap(points.at(v));
-      positions.push_back({static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
+  constexpr std::size_t kSomeCorners = std::size_t{1} << 19;
+  Cut cut;
+  sizes_.for_each_piece([&](std::span<const std::uint32_t> sizes, std::uint64_t) {
+    for (std::size_t end = 0; !sizes.empty(); sizes = sizes.subspan(std::exchange(end, 0))) {
+      work.report("sort", 0);
+      for (std::size_t named = 0; end < sizes.size() && named < kSomeCorners;) named += sizes[end++];
+      cut_some(sizes.first(end), points, lattice, cut);
     }
-    const mesh_file::Triangulation pieces = mesh_file::triangulate(positions, ranks.rank, sizes, steps);
-    for (std::size_t t = 0; t < pieces.corners.size(); ++t) {
-      const auto [a, b, c] = pieces.corners[t];
-      triangles.add({named[a], named[b], named[c]});
-      sources_.add({static_cast<std::uint32_t>(first_face) + pieces.face[t],
-                    {first_corner + a, first_corner + b, first_corner + c}});
-    }
-    count += pieces.polygons;
-    fans += pieces.fans;
-    first_corner += static_cast<std::uint32_t>(count_here);
   });
   triangles.flush();
   sources_.flush();
   view_.emplace(sources_.view());
+}
+
+void SpooledPolygons::cut_some(std::span<const std::uint32_t> sizes, const PointFile& points, const Lattice& lattice,
+                               Cut& cut) {
+  const auto named = corners.read(cut.corners, std::accumulate(sizes.begin(), sizes.end(), std::size_t{0}));
+  const VertexRanks ranks(named);
+  std::vector<Point> positions;
+  for (const std::uint32_t v : ranks.vertices) {
+    const LatticePoint p = lattice.snap(points.at(v));
+    positions.push_back({static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
+  }
+  const mesh_file::Triangulation pieces = mesh_file::triangulate(positions, ranks.rank, sizes, cut.steps);
+  for (std::size_t t = 0; t < pieces.corners.size(); ++t) {
+    const auto [a, b, c] = pieces.corners[t];
+    triangles.add({named[a], named[b], named[c]});
+    sources_.add({cut.faces + pieces.face[t], {cut.corners + a, cut.corners + b, cut.corners + c}});
+  }
+  count += pieces.polygons;
+  fans += pieces.fans;
+  cut.faces += static_cast<std::uint32_t>(sizes.size());
+  cut.corners += static_cast<std::uint32_t>(named.size());
 }
 
 std::vector<std::uint32_t> MeshSpool::polygons_of(std::span<const std::uint32_t> of_triangles) const {

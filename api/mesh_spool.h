@@ -12,6 +12,7 @@
 
 #include "api/large_work.h"
 #include "api/mesh_file/mesh_file.h"
+#include "api/mesh_file/triangulate.h"
 #include "api/point_file.h"
 #include "api/scratch_records.h"
 
@@ -27,8 +28,9 @@ class SpooledAttribute {
   /// From here on values can be read, and none added.
   void finish();
   [[nodiscard]] mesh_file::AttributeView view() const { return {info_, view_->as<double>()}; }
-  /// Gives every vertex the value of the one that stands for it, itself or one before.
-  void join(std::span<const std::uint32_t> first_of_vertex);
+  /// Gives every vertex the value of the one that stands for it, itself or one before. \param report is called again
+  /// and again; may throw to cancel
+  void join(std::span<const std::uint32_t> first_of_vertex, const std::function<void()>& report);
 
  private:
   AttributeInfo info_;
@@ -65,6 +67,13 @@ class SpooledPolygons {
   }
 
  private:
+  /// How far cutting is.
+  struct Cut {
+    mesh_file::CutSteps steps;
+    std::uint32_t faces = 0, corners = 0;
+  };
+  void cut_some(std::span<const std::uint32_t> sizes, const PointFile& points, const Lattice& lattice, Cut& cut);
+
   ScratchRecords<std::uint32_t> sizes_;
   ScratchRecords<TriangleSource> sources_;
   std::optional<ScratchView> view_;

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "db/store.h"
+#include "tests/api/painted_grid.h"
 #include "tests/api/temp_repository.h"
 
 namespace ramcdb::test {
@@ -271,8 +272,19 @@ void open_at(Patch& patch, const Point& place, bool keeps_vertex) {
 }
 
 TEST(Commit, OfBothSidesOfAVertexTakesItAway) {
-  TempRepository repository(hourglass(), 12);
-  const Snapshot before = repository->snapshot();
+  const TempFolder folder;
+  mesh_file::MeshData mesh;
+  mesh.positions = hourglass().positions;
+  for (const Triangle& t : hourglass().faces) mesh.corners.insert(mesh.corners.end(), t.begin(), t.end());
+  mesh.attributes = {make_attribute("heat", AttributeOf::vertex, NumberType::float32, 1, Meaning::other)};
+  mesh.attributes.front().values.assign(mesh.positions.size(), kNone);  // absent is the same as absent
+  write_data(mesh, folder / "mesh.ply");
+  Repository::create(folder / "r.ramcdb");
+  Repository repository = Repository::open(folder / "r.ramcdb");
+  ImportOptions importing;
+  importing.chart_faces = 12;
+  (void)repository.import(folder / "mesh.ply", importing);
+  const Snapshot before = repository.snapshot();
   ASSERT_EQ(before.info().charts, 2U) << "one for each side of the vertex";
   const RegionMesh first = before.read({ChartId(1)}), second = before.read({ChartId(2)});
   std::vector<LatticePoint> common;
@@ -281,21 +293,21 @@ TEST(Commit, OfBothSidesOfAVertexTakesItAway) {
   ASSERT_EQ(common.size(), 1U);
   for (const bool keeps : {false, true}) {
     const std::string branch = keeps ? "kept" : "dropped";
-    (void)repository->create_branch(branch, "1");
-    auto mine = repository->begin_edit({}, branch), theirs = repository->begin_edit({}, branch);
+    (void)repository.create_branch(branch, "1");
+    auto mine = repository.begin_edit({}, branch), theirs = repository.begin_edit({}, branch);
     open_at(mine.checkout(charts({1})), before.position(common.front()), keeps);
     open_at(theirs.checkout(charts({2})), before.position(common.front()), false);
     CommitOptions options = message("open");
     options.branch = branch;
     (void)theirs.commit(options);
-    const MeshInfo halfway = repository->snapshot({}, branch).info();
+    const MeshInfo halfway = repository.snapshot({}, branch).info();
     EXPECT_EQ(halfway.vertices, 15U);
     (void)mine.commit(options);
-    const MeshInfo after = repository->snapshot({}, branch).info();
+    const MeshInfo after = repository.snapshot({}, branch).info();
     EXPECT_EQ(after.vertices, 14U) << branch;
     EXPECT_EQ(after.isolated_vertices, 0U) << branch;
   }
-  EXPECT_TRUE(repository->verify({}).ok());
+  EXPECT_TRUE(repository.verify({}).ok());
 }
 
 TEST(Commit, OfTheSameChartIsAConflictAndWritesNothing) {

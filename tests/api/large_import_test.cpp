@@ -351,6 +351,21 @@ TEST(LargeImport, KeepsPolygonsAndAttributesOfAllKinds) {
   }
 }
 
+/// Faces beside a far vertex lie in few cells of the curve: blocks end within one, but within no polygon.
+TEST(LargeImport, KeepsPolygonsWholeWhereManyLieTogether) {
+  mesh_file::MeshData mesh = painted_grid(40);
+  mesh.attributes.clear();
+  mesh.positions.push_back({1e7, 0, 0});
+  const Imports imports;
+  write_data(mesh, imports / "in.ply");
+  const auto finely = [](ImportOptions& options) { options.bits = 30; };
+  EXPECT_GT(imports.import("in.ply", "large", kLittle, finely).info.charts, 20U);
+  const Snapshot snapshot = imports.repository().snapshot("large");
+  (void)imports.repository().export_mesh(snapshot, imports / "out.ply", {});
+  EXPECT_TRUE(records(snapshot, mesh_file::read_mesh(imports / "out.ply")) == records(snapshot, mesh));
+  EXPECT_THAT(imports.problems(), testing::IsEmpty());
+}
+
 TEST(LargeImport, KeepsPositionsToTheLastBit) {
   for (const bool wide : {false, true}) {
     const Imports imports;

@@ -354,6 +354,14 @@ struct Ear {
   }
 };
 
+TEST(RegionMatch, IdsThatAToolLostSayNothing) {
+  const RegionMesh region = region_of(irregular(scan(2000)));
+  EditedRegion edited(region);
+  edited.move([](std::uint32_t) { return true; });
+  edited.ids.assign(edited.ids.size(), 0);
+  expect_all_survive(region, edited, true, false);
+}
+
 TEST(RegionMatch, AVertexWithoutIdAmongOthersIsNew) {
   const Ear ear;
   const RegionMesh region = region_of(ear.mesh);
