@@ -111,8 +111,9 @@ class BatchEncoder {
   }
 
   void encode(const Prepared& prepared) {
-    const auto& [batch, seams, net] = prepared;
-    const NetIds ids = ids_for(batch, net, seams);
+    const ChartBatch& batch = prepared.batch;
+    const chartify::WireNet& net = prepared.net;
+    const NetIds ids = ids_for(batch, net, prepared.seams);
     std::vector<Point> exact;
     if (record_.exact)
       for (const std::uint32_t v : batch.number) exact.push_back(charts_.mesh.points.at(v));

@@ -258,9 +258,10 @@ namespace {
 /// Where the faces of a chart of a region are.
 std::span<const Triangle> faces_of(const RegionMesh& region, ChartId id) {
   const auto chart = static_cast<std::uint32_t>(std::ranges::lower_bound(region.charts, id) - region.charts.begin());
-  const auto found = std::ranges::equal_range(region.chart_of_face, chart);
-  const auto first = static_cast<std::size_t>(found.begin() - region.chart_of_face.begin());
-  return std::span(region.faces).subspan(first, found.size());
+  const auto begin = region.chart_of_face.begin();
+  const auto [first, last] = std::equal_range(begin, region.chart_of_face.end(), chart);
+  return std::span(region.faces)
+      .subspan(static_cast<std::size_t>(first - begin), static_cast<std::size_t>(last - first));
 }
 
 /// Per vertex of a mesh the region's that it is, by charts that both hold in the same state.

@@ -204,11 +204,12 @@ RegionMesh load_region(std::span<const RegionPart> parts, unsigned threads, Read
       region.chart_of_face.push_back(position);
     }
     ++position;
+    const auto& wires_here = wires[part];
     const auto is_outer = [&](WireId id) {
-      return !std::ranges::all_of(wires[part].at(id).charts,
+      return !std::ranges::all_of(wires_here.at(id).charts,
                                   [&](ChartId other) { return std::ranges::binary_search(region.charts, other); });
     };
-    add_outer_edges(region, c, vertex, is_outer, wires[part]);
+    add_outer_edges(region, c, vertex, is_outer, wires_here);
     if (values) values->add(c, vertex);
   }
   if (values) values->finish();

@@ -161,7 +161,8 @@ class Straightener {
     queue_ = {};
     for (const HalfEdge h : sector(path.front(), left_, right_)) reach(h, 0, most, arriving_at_end);
     while (!queue_.empty()) {
-      const auto [cost, v] = queue_.top();
+      const auto [least, v] = queue_.top();
+      const auto cost = least;  // clang does not let lambdas have names of parts
       queue_.pop();
       if (cost != vertices_[v].cost) continue;
       if (v == end_) return path_to_end();

@@ -1,7 +1,6 @@
 #include "chartify/wire_net_builder.h"
 
 #include <algorithm>
-#include <ranges>
 #include <utility>
 
 #include "chartify/cut_surface.h"
@@ -102,26 +101,19 @@ class Builder {
 
   WireNet run() {
     net_.charts.resize(charts_.chart_count);
-    const std::vector<std::vector<HalfEdge>> borders = by_chart(surface_.borders(), face_of);
+    std::vector<std::vector<HalfEdge>> borders(charts_.chart_count);
+    for (const HalfEdge h : surface_.borders()) borders[charts_.chart_of_face[face_of(h)]].push_back(h);
     for (std::uint32_t c = 0; c < charts_.chart_count; ++c)
       for (const HalfEdge h : borders[c])
         if (!on_loop_[h]) add_loop(net_.charts[c], c, canonical_start(h));
-    const auto faces = by_chart(std::views::iota(std::uint32_t{0}, static_cast<std::uint32_t>(mesh_.faces.size())),
-                                [](std::uint32_t f) { return f; });
+    std::vector<std::vector<std::uint32_t>> faces(charts_.chart_count);
+    for (std::uint32_t f = 0; f < mesh_.faces.size(); ++f) faces[charts_.chart_of_face[f]].push_back(f);
     parallel_for(charts_.chart_count, threads_, [&](std::size_t c) { fill(net_.charts[c], faces[c]); });
     add_isolated_vertices();
     return std::move(net_);
   }
 
  private:
-  /// What belongs to the faces of each chart, in order.
-  template <class Face>
-  [[nodiscard]] std::vector<std::vector<std::uint32_t>> by_chart(const auto& all, Face&& face) const {
-    std::vector<std::vector<std::uint32_t>> parts(charts_.chart_count);
-    for (const std::uint32_t one : all) parts[charts_.chart_of_face[face(one)]].push_back(one);
-    return parts;
-  }
-
   /// Its faces and the vertices inside it. What is on loops is there already; nothing here is another chart's.
   void fill(NetChart& chart, const std::vector<std::uint32_t>& faces) {
     chart.chart.faces.reserve(faces.size());
