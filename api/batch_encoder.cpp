@@ -82,27 +82,16 @@ class BatchEncoder {
     LayerPlaces places;
     for (const std::uint32_t v : encoded.source_vertex) places.vertices.push_back(chart.mesh_vertex[v]);
     for (const std::uint32_t corner : encoded.source_corner) {
+      if (!triangles_) break;  // nothing but exact positions
       const std::uint32_t face = chart.mesh_face[corner / 3];
-      if (!triangles_) continue;  // nothing but exact positions
       const TriangleSource source = charts_.mesh.source(batch.face[face]);
-      const std::uint32_t turn = turn_in_file(batch, face);
+      const auto [a, b, c] = batch.mesh.faces[face];
+      const std::uint32_t turn = turn_against({batch.number[a], batch.number[b], batch.number[c]},
+                                              triangles_->as<Triangle>()[batch.face[face]]);
       places.faces.push_back(source.face);
       for (std::uint32_t i = 0; i < 3; ++i) places.corners.push_back(source.corners[(corner + i + turn) % 3]);
     }
     return places;
-  }
-
-  /// Corner i of a face is corner (i + turn) % 3 of its triangle.
-  [[nodiscard]] std::uint32_t turn_in_file(const ChartBatch& batch, std::uint32_t face) const {
-    const Triangle& triangle = triangles_->as<Triangle>()[batch.face[face]];
-    const auto is_turned = [&](std::uint32_t turn) {
-      for (std::uint32_t i = 0; i < 3; ++i)
-        if (batch.number[batch.mesh.faces[face][i]] != triangle[(i + turn) % 3]) return false;
-      return true;
-    };
-    std::uint32_t turn = 0;
-    while (turn < 2 && !is_turned(turn)) ++turn;
-    return turn;
   }
 
   /// \param done of the batch that is encoded

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 
+#include "api/same_values.h"
 #include "ramcdb/error.h"
 
 namespace ramcdb::detail {
@@ -225,10 +225,7 @@ std::optional<VertexMove> move_to(const Snapshot::Impl& at, const RegionMesh& re
     return move;
   }
   move.position = region.exact[vertex];
-  const auto same_bits = [&](int axis) {
-    return std::bit_cast<std::uint64_t>(move.position[axis]) == std::bit_cast<std::uint64_t>(move.target[axis]);
-  };
-  if (same_bits(0) && same_bits(1) && same_bits(2)) return std::nullopt;
+  if (same_bits(move.position, move.target)) return std::nullopt;
   return move;
 }
 

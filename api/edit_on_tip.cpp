@@ -1,12 +1,12 @@
 #include "api/edit_on_tip.h"
 
 #include <algorithm>
-#include <bit>
 #include <functional>
 
 #include "api/chart_difference.h"
 #include "api/locks.h"
 #include "api/region_query.h"
+#include "api/same_values.h"
 #include "api/three_way.h"
 
 namespace ramcdb::detail {
@@ -30,23 +30,13 @@ ChartId home_in(const PendingEdit& edit, const std::vector<ChartId>& charts) {
   return first == edit.region.charts.end() ? ChartId() : *first;
 }
 
-bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
-
 /// Whether an edit left a vertex of its region where it was, with the values that it had.
 bool is_as_before(const EditedRegion& edited, const RegionMesh& region, std::uint32_t v) {
   const std::uint32_t source = edited.vertex_source[v];
   const RegionMesh& mesh = edited.mesh;
-  if (mesh.points[v] != region.points[source]) return false;
-  if (!region.exact.empty() && mesh.exact[v] != region.exact[source]) return false;
-  for (std::size_t a = 0; a < region.attributes.size(); ++a) {
-    const std::size_t n = region.attributes[a].info.components;
-    if (region.attributes[a].info.of == AttributeOf::vertex &&
-        !std::equal(mesh.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(v * n),
-                    mesh.attributes[a].values.begin() + static_cast<std::ptrdiff_t>((v + 1) * n),
-                    region.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(source * n), same_bits))
-      return false;
-  }
-  return true;
+  return mesh.points[v] == region.points[source] &&
+         (region.exact.empty() || same_bits(mesh.exact[v], region.exact[source])) &&
+         same_values(AttributeOf::vertex, mesh.attributes, v, region.attributes, source);
 }
 
 /// Per vertex of an edit whether it lost its faces there and nothing else happened to it, while charts outside had it

@@ -1,12 +1,12 @@
 #include "api/file_coordinates.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
 
+#include "api/same_values.h"
 #include "ramcdb/error.h"
 
 namespace ramcdb::detail {
@@ -16,8 +16,6 @@ using mesh_file::Format;
 using mesh_file::is_gltf;
 using mesh_file::Scalar;
 using Float = std::numeric_limits<float>;
-
-bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
 /// Which numbers in a file lead back to a mesh's positions.
 class Positions {

@@ -32,6 +32,12 @@ codec::Polygons polygons_of(const LayerPlaces& places) {
 
 }  // namespace
 
+std::uint32_t turn_against(const Triangle& face, const Triangle& triangle) {
+  std::uint32_t turn = 0;
+  while (turn < 2 && face != Triangle{triangle[turn], triangle[(turn + 1) % 3], triangle[(turn + 2) % 3]}) ++turn;
+  return turn;
+}
+
 codec::LayerValues LayerEncoder::values(const Layer& layer, const mesh_file::AttributeView& attribute,
                                         const LayerPlaces& places) {
   const std::size_t components = layer.info.components, numbers = layer.shape().components;

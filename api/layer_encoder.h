@@ -22,6 +22,10 @@ struct LayerPlaces {
   }
 };
 
+/// How far a face's corners are turned against those of the triangle that it is: corner i is corner (i + turn) % 3.
+/// Both by vertices of one numbering.
+[[nodiscard]] std::uint32_t turn_against(const Triangle& face, const Triangle& triangle);
+
 struct LayerBlob {
   std::uint16_t layer = 0;
   Buffer bytes;

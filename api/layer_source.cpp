@@ -14,13 +14,11 @@ LayerSource::LayerSource(const mesh_file::MeshData& data, const mesh_file::Trian
   if (table_.layers.empty()) return;
   turns_.resize(mesh.mesh.faces.size());
   for (std::size_t f = 0; f < turns_.size(); ++f) {
-    const Triangle& source = cut.corners[mesh.source_face[f]];
-    const auto is_turned = [&](std::uint32_t turn) {
-      for (std::uint32_t i = 0; i < 3; ++i)
-        if (mesh.source_vertex[mesh.mesh.faces[f][i]] != data.corners[source[(i + turn) % 3]]) return false;
-      return true;
-    };
-    while (turns_[f] < 2 && !is_turned(turns_[f])) ++turns_[f];
+    const Triangle &face = mesh.mesh.faces[f], &source = cut.corners[mesh.source_face[f]];
+    const auto in_file = [&](std::size_t i) { return mesh.source_vertex[face[i]]; };
+    const auto vertex = [&](std::size_t i) { return data.corners[source[i]]; };
+    turns_[f] = static_cast<std::uint8_t>(
+        turn_against({in_file(0), in_file(1), in_file(2)}, {vertex(0), vertex(1), vertex(2)}));
   }
 }
 

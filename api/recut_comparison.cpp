@@ -1,9 +1,9 @@
 #include "api/recut_comparison.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <cstring>
+
+#include "api/same_values.h"
 
 namespace ramcdb::detail {
 
@@ -150,17 +150,7 @@ bool RecutComparison::same_exact(std::uint32_t vertex) const {
 }
 
 bool RecutComparison::same_at(AttributeOf of, std::size_t now, std::size_t was) const {
-  for (std::size_t a = 0; a < region_.attributes.size(); ++a) {
-    const Attribute &after = edited_.mesh.attributes[a], &before = region_.attributes[a];
-    if (before.info.of != of) continue;
-    for (std::size_t i = 0; i < before.info.components; ++i) {
-      const double x = after.values[now * before.info.components + i];
-      const double y = before.values[was * before.info.components + i];
-      if (std::bit_cast<std::uint64_t>(x) != std::bit_cast<std::uint64_t>(y) && !(std::isnan(x) && std::isnan(y)))
-        return false;
-    }
-  }
-  return true;
+  return detail::same_values(of, edited_.mesh.attributes, now, region_.attributes, was);
 }
 
 }  // namespace ramcdb::detail

@@ -1,12 +1,12 @@
 #include "api/smoothing_field.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <mutex>
 #include <utility>
 
 #include "api/chart_loader.h"
+#include "api/same_values.h"
 #include "api/spooled_edit.h"
 #include "chartify/parallel.h"
 #include "ramcdb/error.h"
@@ -55,12 +55,6 @@ double from_fixed(std::int64_t fixed, const Lattice& lattice, int axis) {
 }
 
 constexpr std::uint64_t aligned(std::uint64_t begin) { return (begin + 15) / 16 * 16; }
-
-bool same_bits(const Point& a, const Point& b) {
-  for (int axis = 0; axis < 3; ++axis)
-    if (std::bit_cast<std::uint64_t>(a[axis]) != std::bit_cast<std::uint64_t>(b[axis])) return false;
-  return true;
-}
 
 }  // namespace
 

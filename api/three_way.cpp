@@ -1,22 +1,16 @@
 #include "api/three_way.h"
 
 #include <algorithm>
-#include <bit>
 #include <set>
 
 #include "api/alike_additions.h"
 #include "api/edited_region_builder.h"
 #include "api/region_match.h"
 #include "api/region_mesh.h"
+#include "api/same_values.h"
 
 namespace ramcdb::detail {
 namespace {
-
-bool same_number(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
-
-bool same_place(const Point& a, const Point& b) {
-  return same_number(a.x, b.x) && same_number(a.y, b.y) && same_number(a.z, b.z);
-}
 
 constexpr const char* kMovedGone = "a vertex that one side moved was removed by the other";
 constexpr const char* kValueGone = "a vertex or face of which one side changed a value was removed by the other";
@@ -60,7 +54,7 @@ class ThreeWayMerge {
       if (const std::uint32_t b = match.vertices[match.vertex[v]].region; b != kNew) {
         base_vertex_[v] = b;
         their_vertex_[b] = v;
-        merged_.theirs_moved = merged_.theirs_moved || !same_place(their_places_[v], base_places_[b]);
+        merged_.theirs_moved = merged_.theirs_moved || !same_bits(their_places_[v], base_places_[b]);
       }
     guessed_.assign(base_.points.size(), false);
     for (const std::uint32_t b : match.guessed) guessed_[b] = true;
@@ -173,11 +167,11 @@ class ThreeWayMerge {
       const std::uint32_t b = base_vertex_[v];
       if (b != kNew && our_vertex_[b] == kNew) {
         if (used[v]) conflict_at(b, "a vertex that one side uses was removed by the other");
-        if (!same_place(their_places_[v], base_places_[b])) conflict_at(b, kMovedGone);
+        if (!same_bits(their_places_[v], base_places_[b])) conflict_at(b, kMovedGone);
         if (has_new_values(AttributeOf::vertex, b, theirs_.attributes, v)) conflict_at(b, kValueGone);
         if (!used[v]) continue;
       } else if (b != kNew && bare[b]) {
-        if (moved_by_us(b) || !same_place(their_places_[v], base_places_[b])) conflict_at(b, kMovedGone);
+        if (moved_by_us(b) || !same_bits(their_places_[v], base_places_[b])) conflict_at(b, kMovedGone);
         if (has_new_values(AttributeOf::vertex, b, theirs_.attributes, v) ||
             has_new_values(AttributeOf::vertex, b, ours_.mesh.attributes, our_vertex_[b]))
           conflict_at(b, kValueGone);
@@ -223,14 +217,14 @@ class ThreeWayMerge {
   }
 
   [[nodiscard]] bool moved_by_us(std::uint32_t base_vertex) const {
-    return !same_place(our_places_[our_vertex_[base_vertex]], base_places_[base_vertex]);
+    return !same_bits(our_places_[our_vertex_[base_vertex]], base_places_[base_vertex]);
   }
 
   [[nodiscard]] const Point& place_of(std::uint32_t v) {
     const std::uint32_t b = base_vertex_[v];
     if (b == kNew || our_vertex_[b] == kNew || !moved_by_us(b)) return their_places_[v];
     const Point& ours = our_places_[our_vertex_[b]];
-    if (!same_place(their_places_[v], base_places_[b]) && !same_place(their_places_[v], ours))
+    if (!same_bits(their_places_[v], base_places_[b]) && !same_bits(their_places_[v], ours))
       conflict_at(b, "both sides moved a vertex to different places");
     return ours;
   }
@@ -242,9 +236,8 @@ class ThreeWayMerge {
       const double before = base_.attributes[a].values[base * components + k];
       const double mine = ours_.mesh.attributes[a].values[ours * components + k];
       double& value = values_[a].values[theirs * components + k];
-      if (same_number(mine, before)) continue;
-      if (!same_number(value, before) && !same_number(value, mine))
-        conflict_at(base_vertex, "both sides changed a value");
+      if (same_bits(mine, before)) continue;
+      if (!same_bits(value, before) && !same_bits(value, mine)) conflict_at(base_vertex, "both sides changed a value");
       value = mine;
     }
   }
@@ -252,12 +245,7 @@ class ThreeWayMerge {
   /// Whether one side changed a value of a vertex, face or corner of the base.
   [[nodiscard]] bool has_new_values(AttributeOf of, std::size_t base, const std::vector<Attribute>& side,
                                     std::size_t there) const {
-    for (std::size_t a = 0; a < side.size(); ++a)
-      for (std::size_t k = 0; side[a].info.of == of && k < side[a].info.components; ++k)
-        if (!same_number(base_.attributes[a].values[base * side[a].info.components + k],
-                         side[a].values[there * side[a].info.components + k]))
-          return true;
-    return false;
+    return !same_values(of, side, there, base_.attributes, base);
   }
   [[nodiscard]] bool has_new_values(FaceMatch base, const std::vector<Attribute>& side, std::uint32_t face) const {
     bool found = has_new_values(AttributeOf::face, base.face, side, face);

@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <unordered_set>
 
 #include "api/repository_impl.h"
+#include "api/same_values.h"
 #include "api/snapshot_impl.h"
 #include "api/streamed_edit.h"
 #include "ramcdb/built_in_edits.h"
@@ -141,8 +141,7 @@ std::optional<VertexMove> move_to(const detail::MeshRecord& record, const Vertex
     move.target = record.lattice.position(move.to);
     return move;
   }
-  for (int a = 0; a < 3; ++a)
-    if (std::bit_cast<std::uint64_t>(move.target[a]) != std::bit_cast<std::uint64_t>(position[a])) return move;
+  if (!detail::same_bits(move.target, position)) return move;
   return std::nullopt;
 }
 

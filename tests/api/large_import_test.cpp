@@ -150,6 +150,20 @@ void expect_same_mesh(const Snapshot& snapshot, const TestMesh& mesh) {
   EXPECT_EQ(sorted(got.points), sorted(expected)) << "no vertex is lost or doubled";
 }
 
+void expect_same_counts(const MeshInfo& a, const MeshInfo& b) {
+  EXPECT_EQ(a.vertices, b.vertices);
+  EXPECT_EQ(a.faces, b.faces);
+  EXPECT_EQ(a.polygons, b.polygons);
+  EXPECT_EQ(a.components, b.components);
+  EXPECT_EQ(a.boundary_loops, b.boundary_loops);
+  EXPECT_EQ(a.isolated_vertices, b.isolated_vertices);
+  EXPECT_EQ(a.degenerate_faces, b.degenerate_faces);
+  EXPECT_EQ(a.duplicate_faces, b.duplicate_faces);
+  EXPECT_EQ(a.nonmanifold_edges, b.nonmanifold_edges);
+  EXPECT_EQ(a.nonmanifold_vertices, b.nonmanifold_vertices);
+  EXPECT_EQ(a.inconsistent_edges, b.inconsistent_edges);
+}
+
 TEST(LargeImport, InManyBlocksGivesTheSameMeshAndCounts) {
   for (const LargeMesh& family : large_meshes()) {
     SCOPED_TRACE(family.name);
@@ -158,16 +172,7 @@ TEST(LargeImport, InManyBlocksGivesTheSameMeshAndCounts) {
     const MeshInfo large = imports.import(family.mesh, "large", kLittle).info;
     expect_same_mesh(imports.repository().snapshot("large"), family.mesh);
     EXPECT_THAT(imports.problems(), testing::IsEmpty());
-    EXPECT_EQ(large.vertices, in_core.vertices);
-    EXPECT_EQ(large.faces, in_core.faces);
-    EXPECT_EQ(large.components, in_core.components);
-    EXPECT_EQ(large.boundary_loops, in_core.boundary_loops);
-    EXPECT_EQ(large.nonmanifold_edges, in_core.nonmanifold_edges);
-    EXPECT_EQ(large.nonmanifold_vertices, in_core.nonmanifold_vertices);
-    EXPECT_EQ(large.inconsistent_edges, in_core.inconsistent_edges);
-    EXPECT_EQ(large.degenerate_faces, in_core.degenerate_faces);
-    EXPECT_EQ(large.duplicate_faces, in_core.duplicate_faces);
-    EXPECT_EQ(large.isolated_vertices, in_core.isolated_vertices);
+    expect_same_counts(large, in_core);
   }
 }
 
@@ -321,18 +326,6 @@ mesh_file::MeshData ugly_polygons() {
   return mesh;
 }
 
-void expect_same_counts(const MeshInfo& a, const MeshInfo& b) {
-  EXPECT_EQ(a.vertices, b.vertices);
-  EXPECT_EQ(a.faces, b.faces);
-  EXPECT_EQ(a.polygons, b.polygons);
-  EXPECT_EQ(a.isolated_vertices, b.isolated_vertices);
-  EXPECT_EQ(a.degenerate_faces, b.degenerate_faces);
-  EXPECT_EQ(a.duplicate_faces, b.duplicate_faces);
-  EXPECT_EQ(a.nonmanifold_edges, b.nonmanifold_edges);
-  EXPECT_EQ(a.nonmanifold_vertices, b.nonmanifold_vertices);
-  EXPECT_EQ(a.inconsistent_edges, b.inconsistent_edges);
-}
-
 TEST(LargeImport, KeepsPolygonsAndAttributesOfAllKinds) {
   const mesh_file::MeshData mesh = ugly_polygons();
   for (const std::uint64_t memory : {kLittle, kSeveral}) {
@@ -352,6 +345,49 @@ TEST(LargeImport, KeepsPolygonsAndAttributesOfAllKinds) {
     EXPECT_GT(infos[0].duplicate_faces, 5U);
     EXPECT_THAT(imports.problems(), testing::IsEmpty());
   }
+}
+
+/// The same faces, with their values, in another order.
+mesh_file::MeshData faces_backwards(const mesh_file::MeshData& mesh) {
+  mesh_file::MeshData out = mesh;
+  out.face_sizes.clear();
+  out.corners.clear();
+  const auto is_of_vertices = [](const Attribute& attribute) { return attribute.info.of == AttributeOf::vertex; };
+  for (Attribute& attribute : out.attributes)
+    if (!is_of_vertices(attribute)) attribute.values.clear();
+  const auto take = [&](std::size_t a, std::size_t first, std::size_t count) {
+    const std::size_t components = mesh.attributes[a].info.components;
+    const auto begin = mesh.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(first * components);
+    auto& to = out.attributes[a].values;
+    to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(count * components));
+  };
+  std::size_t end = mesh.corners.size();
+  for (std::size_t f = mesh.face_sizes.size(); f-- > 0; end -= mesh.face_sizes[f]) {
+    const std::size_t first = end - mesh.face_sizes[f];
+    out.face_sizes.push_back(mesh.face_sizes[f]);
+    for (std::size_t c = first; c < end; ++c) out.corners.push_back(mesh.corners[c]);
+    for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
+      if (mesh.attributes[a].info.of == AttributeOf::face) take(a, f, 1);
+      if (mesh.attributes[a].info.of == AttributeOf::corner) take(a, first, end - first);
+    }
+  }
+  return out;
+}
+
+TEST(LargeImport, OfPolygonsIsTheSameForAnyOrderOfTheFileAndAnyNumberOfThreads) {
+  const mesh_file::MeshData mesh = painted_grid(60);
+  const Imports imports;
+  write_data(mesh, imports / "in.ply");
+  write_data(faces_backwards(mesh), imports / "backwards.ply");
+  const auto on = [](unsigned threads) { return [=](ImportOptions& options) { options.threads = threads; }; };
+  (void)imports.import("in.ply", "as it is", kLittle, on(2));
+  (void)imports.import("in.ply", "on one thread", kLittle, on(1));
+  (void)imports.import("in.ply", "on eight", kLittle, on(8));
+  (void)imports.import("backwards.ply", "backwards", kLittle, on(2));
+  const auto expected = blobs_of(imports.repository(), "as it is");
+  EXPECT_EQ(blobs_of(imports.repository(), "on one thread"), expected);
+  EXPECT_EQ(blobs_of(imports.repository(), "on eight"), expected);
+  EXPECT_EQ(blobs_of(imports.repository(), "backwards"), expected);
 }
 
 /// Faces beside a far vertex lie in few cells of the curve: blocks end within one, but within no polygon.
