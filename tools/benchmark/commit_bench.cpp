@@ -40,19 +40,20 @@ class MeshBench {
       : folder_(folder / "repository"), file_(folder / "chart.ply"), program_(std::move(program)) {}
 
   /// Prints a row.
-  void import(const fs::path& mesh, unsigned bits, unsigned threads) {
+  void import(const fs::path& mesh, unsigned bits, unsigned threads, std::uint64_t memory) {
     Repository::create(folder_);
     repository_.emplace(Repository::open(folder_));
     StageClock clock("read");
     ImportOptions options;
     options.bits = bits;
     options.threads = threads;
+    options.memory = memory;
     options.progress = clock.callback();
     const ImportReport report = repository_->import(mesh, options);
     clock.begin("end");
     charts_ = repository_->snapshot().find({{WholeMesh{}}, 0});
-    fmt::print("| {} | {} | {:.2f} |", report.info.mesh, report.info.faces,
-               1e-6 * static_cast<double>(report.info.faces) / report.seconds);
+    fmt::print("| {} | {} | {:.2f} | {:.0f} |", report.info.mesh, report.info.faces,
+               1e-6 * static_cast<double>(report.info.faces) / report.seconds, 1000 * clock.longest_silence());
     for (const char* stage : kImportStages) fmt::print(" {:.0f} |", 1000 * clock.seconds(stage));
     fmt::print("\n");
   }
@@ -132,26 +133,30 @@ int run(int argc, char** argv) {
   std::vector<std::string> files;
   std::string program;
   unsigned bits = 16, rounds = 9, threads = 2;
+  std::uint64_t memory = std::uint64_t{1} << 30;
   app.add_option("--bits", bits, "Lattice bits along the largest extent (default: 16)");
   app.add_option("--rounds", rounds, "Charts to edit in each mesh, each way (default: 9)")->check(CLI::Range(1, 1000));
   app.add_option("--threads", threads, "Threads of the import (default: 2)");
+  app.add_option("--memory", memory, "Of the import, such as 512M (default: 1G)")->transform(CLI::AsSizeValue(false));
   app.add_option("--ramcdb", program, "The ramcdb command, for processes of its own")->check(CLI::ExistingFile);
   app.add_option("FILE", files, "Meshes; the first is what the others are compared with")
       ->required()
       ->check(CLI::ExistingFile);
   CLI11_PARSE(app, argc, argv);
   fmt::print(
-      "Import with {} threads; milliseconds of CPU of all threads by stage.\n\n| mesh | faces | million faces/s |",
+      "Import with {} threads; milliseconds of CPU of all threads by stage, and of the clock for which it told no "
+      "progress "
+      "at most, and cannot be cancelled.\n\n| mesh | faces | million faces/s | silent |",
       threads);
   for (const char* stage : kImportStages) fmt::print(" {} |", stage);
   fmt::print("\n|---|");
-  for (std::size_t i = 0; i < kImportStages.size() + 2; ++i) fmt::print("---:|");
+  for (std::size_t i = 0; i < kImportStages.size() + 3; ++i) fmt::print("---:|");
   fmt::print("\n");
   std::vector<Row> rows;
   for (const std::string& file : files) {
     const ScratchFolder scratch;
     MeshBench bench(scratch.path(), program);
-    bench.import(file, bits, threads);
+    bench.import(file, bits, threads, memory);
     const std::string mesh = fs::path(file).stem().string();
     rows.push_back({mesh, "moved", bench.measure(FileEdit::move, rounds)});
     rows.push_back({mesh, "re-meshed", bench.measure(FileEdit::remesh, rounds)});

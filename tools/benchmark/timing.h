@@ -30,7 +30,8 @@ inline double cpu_seconds(int who = RUSAGE_SELF) {
   return of(used.ru_utime) + of(used.ru_stime);
 }
 
-/// CPU time of this process by the stage that an operation says it is at, as it tells its progress.
+/// CPU time of this process by the stage that an operation says it is at, as it tells its progress; and how long it
+/// said nothing at most: in between it cannot be cancelled.
 class StageClock {
  public:
   /// What is used until the first stage is counted as this one's.
@@ -39,10 +40,12 @@ class StageClock {
   /// Valid as long as this is.
   [[nodiscard]] std::function<void(std::string_view, double)> callback() {
     return [this](std::string_view stage, double) {
+      hear();
       if (stage != stage_) begin(std::string(stage));
     };
   }
   void begin(std::string stage) {
+    hear();
     const double now = cpu_seconds();
     seconds_[stage_] += now - since_;
     since_ = now;
@@ -53,8 +56,21 @@ class StageClock {
     return it == seconds_.end() ? 0 : it->second;
   }
 
+  /// Wall-clock seconds.
+  [[nodiscard]] double longest_silence() const { return longest_silence_; }
+
  private:
+  using Clock = std::chrono::steady_clock;
+
+  void hear() {
+    const auto now = Clock::now();
+    longest_silence_ = std::max(longest_silence_, std::chrono::duration<double>(now - heard_).count());
+    heard_ = now;
+  }
+
   std::string stage_;
+  Clock::time_point heard_ = Clock::now();
+  double longest_silence_ = 0;
   double since_ = cpu_seconds();
   std::map<std::string, double> seconds_;
 };
