@@ -1,6 +1,7 @@
 #include "api/region_match.h"
 
 #include <algorithm>
+#include <map>
 #include <tuple>
 
 #include "api/region_mesh.h"
@@ -264,23 +265,59 @@ std::span<const Triangle> faces_of(const RegionMesh& region, ChartId id) {
       .subspan(static_cast<std::size_t>(first - begin), static_cast<std::size_t>(last - first));
 }
 
-/// Per vertex of a mesh the region's that it is, by charts that both hold in the same state.
-std::vector<std::uint32_t> vertices_of_charts(const RegionMesh& region, const RegionMesh& mesh,
-                                              std::span<const ChartId> charts) {
-  std::vector<std::uint32_t> known(charts.empty() ? 0 : mesh.points.size(), kNowhere);
-  std::vector<bool> taken(region.points.size(), false);
-  const auto pair = [&](std::uint32_t v, std::uint32_t w) {
-    if (known[w] != kNowhere || taken[v]) return;
-    known[w] = v;
-    taken[v] = true;
-  };
-  for (const ChartId id : charts) {
-    const auto mine = faces_of(region, id), theirs = faces_of(mesh, id);
-    for (std::size_t f = 0; f < theirs.size(); ++f)
-      for (std::size_t i = 0; i < 3; ++i) pair(mine[f][i], theirs[f][i]);
+/// The vertices of a region on edges that charts outside share: by who they are, and by where they lie, which is
+/// kNowhere where several do.
+struct OuterBorder {
+  std::map<VertexKey, std::uint32_t> by_key;
+  std::map<LatticePoint, std::uint32_t> by_place;
+
+  explicit OuterBorder(const RegionMesh& region) {
+    for (std::uint32_t v = 0; v < region.points.size(); ++v) {
+      if (!region.outer_border[v]) continue;
+      by_key.emplace(region.keys[v], v);
+      if (const auto [at, is_first] = by_place.emplace(region.points[v], v); !is_first) at->second = kNowhere;
+    }
   }
-  return known;
-}
+};
+
+/// Pairs of vertices of a region and of a mesh that both are for sure, each in one pair.
+class KnownVertices {
+ public:
+  KnownVertices(const RegionMesh& region, const RegionMesh& mesh)
+      : region_(region), mesh_(mesh), known_(mesh.points.size(), kNowhere), taken_(region.points.size(), false) {}
+
+  /// Per vertex of the mesh the region's, by charts that both hold in the same state and by what both share with charts
+  /// outside: that stays where it is, though others may lie on the same point, and wires there may have been cut.
+  std::vector<std::uint32_t> find(std::span<const ChartId> equal) {
+    for (const ChartId id : equal) {
+      const auto mine = faces_of(region_, id), theirs = faces_of(mesh_, id);
+      for (std::size_t f = 0; f < theirs.size(); ++f)
+        for (std::size_t i = 0; i < 3; ++i) pair(mine[f][i], theirs[f][i]);
+    }
+    const OuterBorder mine(region_), theirs(mesh_);
+    for (const auto& [key, w] : theirs.by_key)
+      if (const auto found = mine.by_key.find(key);
+          found != mine.by_key.end() && region_.points[found->second] == mesh_.points[w])
+        pair(found->second, w);
+    for (const auto& [place, w] : theirs.by_place)
+      if (const auto found = mine.by_place.find(place);
+          w != kNowhere && found != mine.by_place.end() && found->second != kNowhere)
+        pair(found->second, w);
+    return std::move(known_);
+  }
+
+ private:
+  void pair(std::uint32_t v, std::uint32_t w) {
+    if (known_[w] != kNowhere || taken_[v]) return;
+    known_[w] = v;
+    taken_[v] = true;
+  }
+
+  const RegionMesh& region_;
+  const RegionMesh& mesh_;
+  std::vector<std::uint32_t> known_;
+  std::vector<bool> taken_;
+};
 
 }  // namespace
 
@@ -321,7 +358,7 @@ RegionMatch match_region(const RegionMesh& region, const RegionMesh& mesh, const
   const std::vector<Point> places = positions_in(mesh, lattice);
   const TriangleCorners triangles(mesh.faces);
   const Surface surface = triangles.over(mesh.points);
-  const std::vector<std::uint32_t> known = vertices_of_charts(region, mesh, equal);
+  const std::vector<std::uint32_t> known = KnownVertices(region, mesh).find(equal);
   return match_region(region, RegionFaces(region, true),
                       {places, surface.points, surface.corners, surface.firsts, {}, false, known});
 }

@@ -89,6 +89,35 @@ TEST(Diff, CountsFacesAndVerticesThatASplitAdds) {
   expect_equal(*there, *change_of(status.per_chart, ChartId(4)));
 }
 
+/// A new vertex on the very place of one that charts outside share is new all the same, and gone on the way back.
+TEST(Diff, CountsAVertexThatLiesOnTheBorder) {
+  TempRepository repository(sphere(6000), 500);
+  const Snapshot before = repository->snapshot();
+  auto edit = repository->begin_edit();
+  Patch& patch = edit.checkout(one_chart(4));
+  Mesh& mesh = patch.mesh();
+  std::vector<Mesh::FaceHandle> at_border;
+  for (const auto f : mesh.faces())
+    for (auto v = mesh.cfv_iter(f); v.is_valid(); ++v)
+      if (at_border.empty() || at_border.back() != f)
+        if (patch.on_outer_border(*v)) at_border.push_back(f);
+  std::size_t added = 0;
+  for (const auto f : at_border)
+    for (auto v = mesh.cfv_iter(f); v.is_valid(); ++v)
+      if (patch.on_outer_border(*v)) {
+        mesh.split(f, mesh.point(*v));
+        ++added;
+        break;
+      }
+  ASSERT_GT(added, 20U);
+  (void)edit.commit(message("split"));
+  const Snapshot after = repository->snapshot();
+  const DiffReport there = repository->diff(before, after), back = repository->diff(after, before);
+  EXPECT_EQ(there.vertices_added, added);
+  EXPECT_EQ(back.vertices_removed, added);
+  EXPECT_EQ(there.vertices_removed + there.vertices_moved + back.vertices_added + back.vertices_moved, 0U);
+}
+
 TEST(Diff, CountsWhatIsGone) {
   TempRepository repository(sphere(6000), 500);
   auto edit = repository->begin_edit();
